@@ -1,0 +1,89 @@
+//! Errors of the commands and their exit codes.
+
+use std::path::PathBuf;
+
+use dpsm::gpu::GpuError;
+use dpsm::link::LinkError;
+use dpsm::render::FrameError;
+use dpsm::scene::SceneError;
+use dpsm::validate::ValidateError;
+
+/// What a command can fail with.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// An output that cannot be written.
+    #[error("cannot write {}: {source}; choose another place with -o", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// An option's value that is known but not built.
+    #[error("{option} {value} is not built yet; built: {built}")]
+    NotBuilt {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: String,
+        /// The values that work.
+        built: &'static str,
+    },
+    /// An option whose value does not fit.
+    #[error("{0}")]
+    Usage(String),
+    /// A line of a CSV file.
+    #[error("{}:{line}: {message}", path.display())]
+    Csv {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong, and where in the line.
+        message: String,
+    },
+    /// A scene that cannot be used.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Settings that do not fit.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// WGSL that does not link.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// WGSL that is not valid.
+    #[error(transparent)]
+    Validate(#[from] ValidateError),
+    /// The adapter.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// An image that cannot be encoded.
+    #[error("cannot encode {}: {source}", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: image::ImageError,
+    },
+}
+
+impl CliError {
+    /// 2 for bad input, 1 for what failed on good input.
+    pub fn code(&self) -> u8 {
+        match self {
+            CliError::Gpu(
+                GpuError::Rejected { .. } | GpuError::Lost { .. } | GpuError::OutOfMemory { .. },
+            )
+            | CliError::Encode { .. } => 1,
+            _ => 2,
+        }
+    }
+}

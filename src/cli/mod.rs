@@ -1,0 +1,126 @@
+//! Arguments, and the choice of the command.
+
+mod error;
+mod eval;
+mod output;
+mod render;
+mod text;
+
+pub use error::CliError;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use dpsm::gpu::{Device, GpuError};
+use glam::Vec3;
+
+/// Point-light shadows from dual-paraboloid maps.
+///
+/// With no command: renders the two scenes of Brabec, Annen and Seidel 2002 and prints where the
+/// pictures are, which adapter ran and how long each pass took.
+#[derive(Debug, Parser)]
+#[command(version, after_help = EXAMPLES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// What computes: an adapter if there is one, the processor, or an adapter or nothing
+    ///
+    /// WGPU_ADAPTER_NAME (part of its name) and WGPU_BACKEND (vulkan, metal, dx12) choose the
+    /// adapter. `cpu` runs the scalar ports.
+    #[arg(long, global = true, value_enum, default_value = "auto")]
+    adapter: AdapterChoice,
+    /// Folder for the pictures when no command is given
+    #[arg(long, default_value = "dpsm-pictures")]
+    folder: PathBuf,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  dpsm
+  dpsm render brabec-room --light=-1,2,0.5 --maps -o room.png
+  dpsm render atrium.obj --light 0,4,0 --size 2048 -o atrium.png
+  dpsm link visibility shade -o shadows.wgsl
+  dpsm validate my-shader.wesl
+  dpsm eval dpsm_project --input points.csv";
+
+/// Which implementation computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum AdapterChoice {
+    /// An adapter, or the scalar ports where there is none
+    Auto,
+    /// The scalar ports
+    Cpu,
+    /// An adapter; an error where there is none
+    Gpu,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Render(render::RenderArguments),
+    /// List the modules: name, one line, imports
+    Modules,
+    Link(text::LinkArguments),
+    Validate(text::ValidateArguments),
+    Eval(eval::EvalArguments),
+}
+
+/// Runs the command.
+pub fn run(arguments: Arguments) -> Result<(), CliError> {
+    let adapter = arguments.adapter;
+    match arguments.command {
+        None => render::main_job(adapter, &arguments.folder),
+        Some(Command::Render(render)) => render::render(adapter, &render),
+        Some(Command::Modules) => text::modules(),
+        Some(Command::Link(link)) => text::link(&link),
+        Some(Command::Validate(validate)) => text::validate(&validate),
+        Some(Command::Eval(eval)) => eval::eval(adapter, &eval),
+    }
+}
+
+impl AdapterChoice {
+    /// Opens the adapter; `None` means the scalar ports, and stderr says why.
+    fn open(self) -> Result<Option<Device>, CliError> {
+        if self == AdapterChoice::Cpu {
+            return Ok(None);
+        }
+        match Device::open() {
+            Ok(device) => Ok(Some(device)),
+            Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
+                if self == AdapterChoice::Auto =>
+            {
+                eprintln!("dpsm: {error}");
+                eprintln!("dpsm: running the scalar ports on the processor instead");
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// The line that says what computed.
+fn describe(device: Option<&Device>) -> String {
+    match device {
+        Some(device) => format!("adapter: {}", device.describe()),
+        None => "adapter: none; the scalar ports on the processor".to_string(),
+    }
+}
+
+/// Parses `x,y,z`.
+fn parse_vector(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<&str> = text.split(',').map(str::trim).collect();
+    let &[x, y, z] = numbers.as_slice() else {
+        return Err("expected three numbers, as in -1,2,0.5".into());
+    };
+    let number = |text: &str| {
+        let value: f64 = text
+            .parse()
+            .map_err(|_| format!("`{text}` is not a number"))?;
+        match (value as f32).is_finite() {
+            true => Ok(value as f32),
+            false => Err(format!(
+                "`{text}` is outside float range, 3.4e38 at the most"
+            )),
+        }
+    };
+    Ok(Vec3::new(number(x)?, number(y)?, number(z)?))
+}

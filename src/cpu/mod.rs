@@ -1,0 +1,323 @@
+//! The rendering of a frame by the scalar ports alone, with no adapter.
+
+mod raster;
+
+pub use raster::{Fragment, triangle};
+
+use std::time::Instant;
+
+use glam::Vec3;
+
+use crate::render::{
+    AMBIENT, Frame, Lookup, Method, Picture, Rendering, SPECULAR, Vertex, View, float,
+};
+use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
+use crate::scalar::float::{self as scalar, Float, Vec2, Vec4, select};
+use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
+use crate::scalar::maps::{DepthMaps, Sampling};
+use crate::scalar::shade::{dpsm_highlight, dpsm_lambert, dpsm_shade};
+use crate::scalar::visibility::{
+    DpsmReceiverVertex, dpsm_receiver_vertex, dpsm_visibility, dpsm_visibility_vertex,
+};
+
+/// Renders a frame on the processor.
+pub fn render(frame: &Frame) -> Rendering {
+    let hemispheres = frame.light.hemispheres;
+    let size = frame.settings.size;
+    let mut maps = DepthMaps::empty(size, hemispheres, Sampling::Nearest);
+    let mut timings = Vec::new();
+    let texels = size as usize * size as usize;
+    let layers = maps
+        .depths
+        .chunks_mut(texels)
+        .zip(["front map", "back map"]);
+    for (hemisphere, (layer, name)) in (0..).zip(layers) {
+        let start = Instant::now();
+        map_pass(frame, hemisphere, layer);
+        timings.push((name.to_string(), start.elapsed()));
+    }
+    let start = Instant::now();
+    let lit = camera_pass(frame, &maps);
+    timings.push(("camera".to_string(), start.elapsed()));
+    let mut views = Vec::new();
+    if frame.settings.views {
+        for (hemisphere, name) in (0..hemispheres).zip(["front view", "back view"]) {
+            let start = Instant::now();
+            views.push(view_pass(frame, &maps, hemisphere));
+            timings.push((name.to_string(), start.elapsed()));
+        }
+    }
+    Rendering {
+        lit,
+        maps,
+        views,
+        timings,
+    }
+}
+
+/// Interpolates three values with a fragment's weights.
+fn mix<T, const N: usize>(
+    weights: [f32; 3],
+    values: [T; 3],
+    words: impl Fn(T) -> [f32; N],
+) -> [f32; N] {
+    let values = values.map(words);
+    std::array::from_fn(|k| (0..3).map(|i| weights[i] * values[i][k]).sum())
+}
+
+fn words(v: scalar::Vec3<f32>) -> [f32; 3] {
+    [v.x, v.y, v.z]
+}
+
+fn vector([x, y, z]: [f32; 3]) -> scalar::Vec3<f32> {
+    scalar::Vec3::new(x, y, z)
+}
+
+/// One hemisphere's map: stored depths of all casters.
+fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
+    let Frame {
+        light,
+        bias,
+        settings,
+        ..
+    } = frame;
+    let place = |vertex: &Vertex| {
+        let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
+        (p, dpsm_caster_vertex(p, *light, *bias))
+    };
+    let placed: Vec<_> = frame.vertices.iter().map(place).collect();
+    for corners in &frame.triangles {
+        let corners = corners.map(|index| placed[index as usize]);
+        let clip = corners.map(|(_, vertex)| vertex.clip);
+        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+            let (keep, depth) = match settings.method {
+                Method::Vertex => {
+                    let [value] = mix(fragment.weights, corners, |(_, vertex)| {
+                        [vertex.hemisphere_value]
+                    });
+                    (dpsm_caster_keep(value), fragment.depth)
+                }
+                Method::FragmentDepth => {
+                    let p = vector(mix(fragment.weights, corners, |(p, _)| words(p)));
+                    let stored = dpsm_caster_fragment(p, *light, *bias);
+                    (stored.keep, stored.depth)
+                }
+            };
+            if keep && (0.0..=1.0).contains(&depth) {
+                let texel = &mut layer[(fragment.y * settings.size + fragment.x) as usize];
+                *texel = texel.min(settings.format.store(depth));
+            }
+        });
+    }
+}
+
+/// The visible fragment of each pixel: triangle and weights.
+type Visible = Option<(u32, [f32; 3])>;
+
+/// Draws triangles into a visibility buffer; the fragment with the larger `nearness` stays.
+fn visible(
+    triangles: &[[u32; 3]],
+    clip: &[Vec4<f32>],
+    image: [u32; 2],
+    smallest_w: f32,
+    nearness: impl Fn(usize, &Fragment) -> Option<f32>,
+) -> Vec<Visible> {
+    let pixels = image[0] as usize * image[1] as usize;
+    let mut nearest = vec![f32::NEG_INFINITY; pixels];
+    let mut seen = vec![None; pixels];
+    for (index, corners) in triangles.iter().enumerate() {
+        let clip = corners.map(|corner| clip[corner as usize]);
+        triangle(clip, image, smallest_w, &mut |fragment| {
+            let pixel = (fragment.y * image[0] + fragment.x) as usize;
+            let Some(nearness) = nearness(index, &fragment) else {
+                return;
+            };
+            if nearness > nearest[pixel] {
+                nearest[pixel] = nearness;
+                seen[pixel] = Some((index as u32, fragment.weights));
+            }
+        });
+    }
+    seen
+}
+
+/// Colours a visibility buffer, its rows shared out over the processor's cores.
+fn color(
+    seen: &[Visible],
+    [width, height]: [u32; 2],
+    shade: impl Fn(u32, [f32; 3]) -> Vec3 + Sync,
+) -> Picture {
+    let mut pixels = vec![[0, 0, 0, 255]; seen.len()];
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = seen.len().div_ceil(cores).max(1);
+    std::thread::scope(|scope| {
+        for (pixels, seen) in pixels.chunks_mut(share).zip(seen.chunks(share)) {
+            let shade = &shade;
+            scope.spawn(move || {
+                for (pixel, seen) in pixels.iter_mut().zip(seen) {
+                    if let Some((triangle, weights)) = *seen {
+                        let [r, g, b] = shade(triangle, weights).to_array().map(srgb);
+                        *pixel = [r, g, b, 255];
+                    }
+                }
+            });
+        }
+    });
+    Picture {
+        width,
+        height,
+        pixels,
+    }
+}
+
+/// The camera's projection, as camera.wesl's `project`.
+fn project(view: &View, position: Vec3) -> Vec4<f32> {
+    let d = float(position) - float(view.eye);
+    Vec4::new(
+        float(view.right).dot(d) * view.scale[0],
+        float(view.up).dot(d) * view.scale[1],
+        view.near,
+        float(view.forward).dot(d),
+    )
+}
+
+/// The lit image.
+fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
+    let Frame {
+        light,
+        view,
+        settings,
+        ..
+    } = frame;
+    let clip: Vec<_> = frame
+        .vertices
+        .iter()
+        .map(|v| project(view, v.position))
+        .collect();
+    let nearness = |_: usize, fragment: &Fragment| Some(fragment.depth);
+    let seen = visible(&frame.triangles, &clip, settings.image, view.near, nearness);
+    let at_vertices: Vec<DpsmReceiverVertex<f32>> = match settings.lookup {
+        Lookup::Pixel => Vec::new(),
+        Lookup::Vertex => {
+            let receiver = |v: &Vertex| dpsm_to_light(float(v.position), *light);
+            frame
+                .vertices
+                .iter()
+                .map(|v| dpsm_receiver_vertex(receiver(v), *light))
+                .collect()
+        }
+    };
+    let eye = dpsm_to_light(float(view.eye), *light);
+    color(&seen, settings.image, |triangle, weights| {
+        let surface = Surface::new(frame, triangle, weights);
+        let visibility = match settings.lookup {
+            Lookup::Pixel => dpsm_visibility(maps, surface.p, *light, 0.0),
+            Lookup::Vertex => {
+                let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
+                let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
+                    let DpsmReceiverVertex {
+                        front,
+                        back,
+                        depth,
+                        hemisphere_value,
+                    } = at;
+                    [front.x, front.y, back.x, back.y, depth, hemisphere_value]
+                });
+                let (front, back) = (Vec2::new(fx, fy), Vec2::new(bx, by));
+                let at = DpsmReceiverVertex {
+                    front,
+                    back,
+                    depth,
+                    hemisphere_value,
+                };
+                dpsm_visibility_vertex(maps, at, *light, 0.0)
+            }
+        };
+        surface.shade(frame, eye, visibility)
+    })
+}
+
+/// What the light sees of one hemisphere.
+fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
+    let Frame {
+        light, settings, ..
+    } = frame;
+    let place = |vertex: &Vertex| {
+        let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
+        dpsm_caster_vertex(p, *light, 0.0)
+    };
+    let placed: Vec<_> = frame.vertices.iter().map(place).collect();
+    let clip: Vec<_> = placed.iter().map(|vertex| vertex.clip).collect();
+    let image = [settings.size; 2];
+    let seen = visible(&frame.triangles, &clip, image, 1.0, |index, fragment| {
+        let corners = frame.triangles[index].map(|i| placed[i as usize]);
+        let [value] = mix(
+            fragment.weights,
+            corners,
+            |vertex| [vertex.hemisphere_value],
+        );
+        let inside = dpsm_caster_keep(value) && (0.0..=1.0).contains(&fragment.depth);
+        inside.then_some(-fragment.depth)
+    });
+    color(&seen, image, |triangle, weights| {
+        let surface = Surface::new(frame, triangle, weights);
+        let visibility = dpsm_visibility(maps, surface.p, *light, 0.0);
+        surface.shade(frame, vector([0.0; 3]), visibility)
+    })
+}
+
+/// A surface point in light space.
+struct Surface {
+    p: scalar::Vec3<f32>,
+    normal: scalar::Vec3<f32>,
+    albedo: Vec3,
+}
+
+impl Surface {
+    fn new(frame: &Frame, triangle: u32, weights: [f32; 3]) -> Self {
+        let light = frame.light;
+        let corners = frame.triangles[triangle as usize].map(|i| frame.vertices[i as usize]);
+        let p = mix(weights, corners, |v| {
+            words(dpsm_to_light(float(v.position), light))
+        });
+        let normal = mix(weights, corners, |v| {
+            let n = float(v.normal);
+            [light.right.dot(n), light.up.dot(n), light.forward.dot(n)]
+        });
+        Self {
+            p: vector(p),
+            normal: vector(normal),
+            albedo: corners[0].albedo,
+        }
+    }
+
+    /// Lit colour seen from `eye` in light space, as camera.wesl's `shade`.
+    fn shade(&self, frame: &Frame, eye: scalar::Vec3<f32>, visibility: f32) -> Vec3 {
+        let opposite = vector([0.0; 3]) - self.p;
+        let to_light = opposite / self.p.length().max(frame.light.near);
+        let to_eye = (eye - self.p) / Float::max((eye - self.p).length(), frame.view.near);
+        let unit = self.normal / self.normal.length().max(1e-6);
+        let normal = select(vector([0.0; 3]) - unit, unit, unit.dot(to_eye) >= 0.0);
+        let cosine = dpsm_lambert(normal, to_light);
+        let highlight = select(0.0, dpsm_highlight(normal, to_light, to_eye), cosine > 0.0);
+        let color = frame.color;
+        let lit = dpsm_shade(
+            float(color * self.albedo * AMBIENT),
+            float(color * self.albedo * cosine),
+            float(color * SPECULAR * highlight),
+            visibility,
+        );
+        Vec3::new(lit.x, lit.y, lit.z)
+    }
+}
+
+/// A linear channel as an sRGB byte.
+fn srgb(linear: f32) -> u8 {
+    let c = linear.clamp(0.0, 1.0);
+    let encoded = if c <= 0.0031308 {
+        12.92 * c
+    } else {
+        1.055 * c.powf(1.0 / 2.4) - 0.055
+    };
+    (encoded * 255.0).round() as u8
+}

@@ -1,0 +1,279 @@
+//! The camera pass, the hemisphere views, and the whole rendering of a frame.
+
+use super::maps::{
+    MeshBuffers, ShadowMaps, depth_attachment, depth_state, light_words, shader, uniform_buffer,
+    vertex_state,
+};
+use super::timer::{Stamps, render_writes};
+use super::{Device, GpuError};
+use crate::render::{AMBIENT, Frame, Lookup, Picture, Rendering, SPECULAR};
+use crate::scalar::maps::Sampling;
+
+/// Format of the pictures: the attachment encodes sRGB.
+const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// Format of the camera's own depth buffer, reversed: 0 is infinitely far.
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Renders a frame: maps, lit image and, where the settings ask for them, hemisphere views.
+pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
+    let mesh = MeshBuffers::new(device, frame)?;
+    let maps = ShadowMaps::new(device, frame)?;
+    let mut timings = Vec::new();
+    for (hemisphere, name) in (0..maps.hemispheres()).zip(["front map", "back map"]) {
+        let record = |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
+            maps.record(encoder, hemisphere, &mesh, stamps);
+        };
+        timings.push(device.time_warm(name, record)?);
+    }
+    let camera = Camera::new(device, frame, &maps)?;
+    let entry = match frame.settings.lookup {
+        Lookup::Pixel => "pixel_lookup",
+        Lookup::Vertex => "vertex_lookup",
+    };
+    let pass = Pass {
+        name: "camera",
+        entry,
+        reversed: true,
+        image: frame.settings.image,
+    };
+    let (lit, time) = camera.draw(device, &pass, &mesh, 0)?;
+    timings.push(time);
+    let mut views = Vec::new();
+    if frame.settings.views {
+        let image = [frame.settings.size; 2];
+        for (hemisphere, name) in (0..maps.hemispheres()).zip(["front view", "back view"]) {
+            let pass = Pass {
+                name,
+                entry: "view",
+                reversed: false,
+                image,
+            };
+            let (view, time) = camera.draw(device, &pass, &mesh, hemisphere)?;
+            views.push(view);
+            timings.push(time);
+        }
+    }
+    Ok(Rendering {
+        lit,
+        maps: maps.download(device)?,
+        views,
+        timings,
+    })
+}
+
+/// One colour pass.
+struct Pass<'a> {
+    name: &'a str,
+    /// Vertex entry point; the fragment's has `_fragment` behind it.
+    entry: &'a str,
+    /// Depth buffer with 1 near and 0 far.
+    reversed: bool,
+    /// Width and height.
+    image: [u32; 2],
+}
+
+/// What the camera passes bind.
+struct Camera<'a> {
+    module: wgpu::ShaderModule,
+    uniform: wgpu::Buffer,
+    sampler: wgpu::Sampler,
+    maps: &'a ShadowMaps,
+}
+
+impl<'a> Camera<'a> {
+    fn new(device: &Device, frame: &Frame, maps: &'a ShadowMaps) -> Result<Self, GpuError> {
+        let module = shader(device, "camera.wesl", include_str!("camera.wesl"))?;
+        let view = &frame.view;
+        let rows = [
+            (view.eye, view.near),
+            (view.right, view.scale[0]),
+            (view.up, view.scale[1]),
+            (view.forward, AMBIENT),
+            (frame.color, SPECULAR),
+        ];
+        let row = |(v, last): (glam::Vec3, f32)| [v.x, v.y, v.z, last].map(f32::to_bits);
+        let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
+        words.extend(light_words(&frame.light));
+        let uniform = uniform_buffer(device, &words)?;
+        let sampler = comparison_sampler(device, Sampling::Nearest)?;
+        Ok(Self {
+            module,
+            uniform,
+            sampler,
+            maps,
+        })
+    }
+
+    /// Draws all triangles with one pair of entry points and reads the picture back.
+    fn draw(
+        &self,
+        device: &Device,
+        &Pass {
+            name,
+            entry,
+            reversed,
+            image: [width, height],
+        }: &Pass<'_>,
+        mesh: &MeshBuffers,
+        instance: u32,
+    ) -> Result<(Picture, (String, std::time::Duration)), GpuError> {
+        let limit = device.device.limits().max_texture_dimension_2d;
+        if let Some(&asked) = [width, height]
+            .iter()
+            .find(|&&side| !(1..=limit).contains(&side))
+        {
+            let what = "image size";
+            return Err(GpuError::Limit {
+                what,
+                asked: asked.into(),
+                limit: limit.into(),
+            });
+        }
+        let (compare, clear) = match reversed {
+            true => (wgpu::CompareFunction::Greater, 0.0),
+            false => (wgpu::CompareFunction::Less, 1.0),
+        };
+        let pipeline = device.step(name, || self.pipeline(device, entry, compare))?;
+        let target = |format, usage| {
+            device.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(name),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        let (color, depth, group) = device.step(name, || {
+            let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
+            let depth = target(DEPTH, wgpu::TextureUsages::empty());
+            (color, depth, self.group(device, &pipeline))
+        })?;
+        let color_view = color.create_view(&Default::default());
+        let depth_view = depth.create_view(&Default::default());
+        let time = device.time_warm(name, |encoder, stamps| {
+            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some(name),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &color_view,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: Some(depth_attachment(&depth_view, clear)),
+                timestamp_writes: render_writes(stamps),
+                ..Default::default()
+            });
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            mesh.draw(&mut pass, instance);
+        })?;
+        Ok((picture(device, &color)?, time))
+    }
+
+    fn pipeline(
+        &self,
+        device: &Device,
+        entry: &str,
+        compare: wgpu::CompareFunction,
+    ) -> wgpu::RenderPipeline {
+        device
+            .device
+            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(entry),
+                layout: None,
+                vertex: vertex_state(&self.module, entry),
+                primitive: Default::default(),
+                depth_stencil: Some(depth_state(DEPTH, compare)),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &self.module,
+                    entry_point: Some(&format!("{entry}_fragment")),
+                    compilation_options: Default::default(),
+                    targets: &[Some(COLOR.into())],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+    }
+
+    fn group(&self, device: &Device, pipeline: &wgpu::RenderPipeline) -> wgpu::BindGroup {
+        device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("camera"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: self.uniform.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(&self.maps.view),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 2,
+                    resource: wgpu::BindingResource::Sampler(&self.sampler),
+                },
+            ],
+        })
+    }
+}
+
+/// A sampler that compares with less-equal and clamps at the edges.
+pub fn comparison_sampler(device: &Device, sampling: Sampling) -> Result<wgpu::Sampler, GpuError> {
+    let filter = match sampling {
+        Sampling::Nearest => wgpu::FilterMode::Nearest,
+        Sampling::Linear => wgpu::FilterMode::Linear,
+    };
+    device.step("the comparison sampler", || {
+        device.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("comparison"),
+            mag_filter: filter,
+            min_filter: filter,
+            compare: Some(wgpu::CompareFunction::LessEqual),
+            ..Default::default()
+        })
+    })
+}
+
+/// Reads a colour texture back.
+fn picture(device: &Device, texture: &wgpu::Texture) -> Result<Picture, GpuError> {
+    use wgpu::BufferUsages as Usage;
+    let (width, height) = (texture.width(), texture.height());
+    let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let bytes = u64::from(row) * u64::from(height);
+    let back = device.buffer("picture bytes", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
+    let encoder = device.encode("reading the picture", |encoder| {
+        encoder.copy_texture_to_buffer(
+            texture.as_image_copy(),
+            wgpu::TexelCopyBufferInfo {
+                buffer: &back,
+                layout: wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(row),
+                    rows_per_image: None,
+                },
+            },
+            texture.size(),
+        );
+    })?;
+    device.submit("reading the picture", encoder)?;
+    let data = device.read(&back, bytes)?;
+    let line = |line: &[u8]| -> Vec<[u8; 4]> { line[..width as usize * 4].as_chunks().0.to_vec() };
+    let pixels = data.chunks(row as usize).flat_map(line).collect();
+    Ok(Picture {
+        width,
+        height,
+        pixels,
+    })
+}

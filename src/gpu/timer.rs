@@ -1,0 +1,93 @@
+//! Times passes: timestamps at the pass's boundaries where the adapter has them, else the clock
+//! around a submission that is waited for.
+
+use std::time::{Duration, Instant};
+
+use super::{Device, GpuError};
+
+/// Where a pass writes its timestamps; `None` without the feature.
+pub type Stamps<'a> = Option<&'a wgpu::QuerySet>;
+
+/// A render pass's timestamp writes.
+pub fn render_writes(stamps: Stamps<'_>) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+    stamps.map(|query_set| wgpu::RenderPassTimestampWrites {
+        query_set,
+        beginning_of_pass_write_index: Some(0),
+        end_of_pass_write_index: Some(1),
+    })
+}
+
+/// A compute pass's timestamp writes.
+pub fn compute_writes(stamps: Stamps<'_>) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    stamps.map(|query_set| wgpu::ComputePassTimestampWrites {
+        query_set,
+        beginning_of_pass_write_index: Some(0),
+        end_of_pass_write_index: Some(1),
+    })
+}
+
+impl Device {
+    /// Runs one pass alone and gives its time; negative timestamp deltas give `None`.
+    pub fn time(
+        &self,
+        name: &str,
+        record: impl Fn(&mut wgpu::CommandEncoder, Stamps<'_>),
+    ) -> Result<Option<Duration>, GpuError> {
+        if !self
+            .device
+            .features()
+            .contains(wgpu::Features::TIMESTAMP_QUERY)
+        {
+            let start = Instant::now();
+            let encoder = self.encode(name, |encoder| record(encoder, None))?;
+            self.submit(name, encoder)?;
+            return Ok(Some(start.elapsed()));
+        }
+        let bytes = 2 * u64::from(wgpu::QUERY_SIZE);
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let resolved = self.buffer("timestamps", bytes, usage)?;
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let back = self.buffer("timestamps read back", bytes, usage)?;
+        let stamps = self.step(name, || {
+            self.device.create_query_set(&wgpu::QuerySetDescriptor {
+                label: Some("timestamps"),
+                ty: wgpu::QueryType::Timestamp,
+                count: 2,
+            })
+        })?;
+        let encoder = self.encode(name, |encoder| {
+            record(encoder, Some(&stamps));
+            encoder.resolve_query_set(&stamps, 0..2, &resolved, 0);
+            encoder.copy_buffer_to_buffer(&resolved, 0, &back, 0, bytes);
+        })?;
+        self.submit(name, encoder)?;
+        let ticks: Vec<u64> = bytemuck::pod_collect_to_vec(&self.read(&back, bytes)?);
+        let period = f64::from(self.queue.get_timestamp_period());
+        let delta = ticks[1].checked_sub(ticks[0]);
+        Ok(delta.map(|ticks| Duration::from_nanos((ticks as f64 * period) as u64)))
+    }
+
+    /// As `time`, after one run whose time is thrown away: the first one compiles.
+    pub fn time_warm(
+        &self,
+        name: &str,
+        record: impl Fn(&mut wgpu::CommandEncoder, Stamps<'_>),
+    ) -> Result<(String, Duration), GpuError> {
+        self.time(name, &record)?;
+        let duration = self.time(name, &record)?.unwrap_or_default();
+        Ok((name.to_string(), duration))
+    }
+
+    /// Records commands with wgpu's errors caught.
+    pub fn encode(
+        &self,
+        step: &str,
+        record: impl FnOnce(&mut wgpu::CommandEncoder),
+    ) -> Result<wgpu::CommandEncoder, GpuError> {
+        self.step(step, || {
+            let mut encoder = self.device.create_command_encoder(&Default::default());
+            record(&mut encoder);
+            encoder
+        })
+    }
+}

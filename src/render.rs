@@ -1,0 +1,394 @@
+//! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
+
+use std::time::Duration;
+
+use glam::{DVec3, Vec3};
+
+use crate::scalar::float as scalar;
+use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
+use crate::scalar::maps::DepthMaps;
+use crate::scene::{Camera, Scene};
+
+/// Storage of a depth map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 16-bit unorm.
+    D16,
+    /// 24-bit unorm; an adapter may use 32-bit float in its place.
+    D24,
+    /// 32-bit float.
+    D32,
+}
+
+impl Format {
+    /// Largest difference between neighbouring stored values: 2^-16, 2^-24 or 0 (f32 itself).
+    pub fn quantum(self) -> f32 {
+        match self {
+            Format::D16 => 1.0 / 65536.0,
+            Format::D24 => 1.0 / 16777216.0,
+            Format::D32 => 0.0,
+        }
+    }
+
+    /// A depth in [0, 1] as the format stores it.
+    pub fn store(self, depth: f32) -> f32 {
+        let unorm = |steps: f64| ((f64::from(depth) * steps).round() / steps) as f32;
+        match self {
+            Format::D16 => unorm(65535.0),
+            Format::D24 => unorm(16777215.0),
+            Format::D32 => depth,
+        }
+    }
+}
+
+/// How the maps are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Brabec 2002: project vertices, interpolate everything.
+    Vertex,
+    /// The blog: radial depth of each fragment's interpolated position.
+    FragmentDepth,
+}
+
+/// Where receivers find their texture coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lookup {
+    /// For each pixel (Osman 2006).
+    Pixel,
+    /// For each vertex, interpolated (Brabec 2002).
+    Vertex,
+}
+
+/// The settings of a rendering.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Map size N in texels.
+    pub size: u32,
+    /// Storage of the maps.
+    pub format: Format,
+    /// How the maps are made.
+    pub method: Method,
+    /// How receivers look.
+    pub lookup: Lookup,
+    /// Width and height of the lit image in pixels.
+    pub image: [u32; 2],
+    /// Near sphere's radius; by default a thousandth of far.
+    pub near: Option<f32>,
+    /// Far sphere's radius; by default just beyond the farthest vertex.
+    pub far: Option<f32>,
+    /// Constant bias in units of depth; by default `constant_bias`.
+    pub bias: Option<f32>,
+    /// Also render what the light sees of each hemisphere.
+    pub views: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            size: 1024,
+            format: Format::D32,
+            method: Method::Vertex,
+            lookup: Lookup::Pixel,
+            image: [960, 720],
+            near: None,
+            far: None,
+            bias: None,
+            views: false,
+        }
+    }
+}
+
+/// A vertex as the passes read it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "gpu", derive(bytemuck::Pod, bytemuck::Zeroable))]
+pub struct Vertex {
+    /// World position.
+    pub position: Vec3,
+    /// Unit normal.
+    pub normal: Vec3,
+    /// Linear reflectance.
+    pub albedo: Vec3,
+}
+
+/// A pinhole camera, ready for the vertex stage: right, up and forward are orthonormal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// World position.
+    pub eye: Vec3,
+    /// To the image's right.
+    pub right: Vec3,
+    /// To the image's top.
+    pub up: Vec3,
+    /// Into the image.
+    pub forward: Vec3,
+    /// Distance of the near plane.
+    pub near: f32,
+    /// Cotangents of half the horizontal and vertical fields of view.
+    pub scale: [f32; 2],
+}
+
+/// Ambient light's share of the light's colour.
+pub const AMBIENT: f32 = 0.2;
+
+/// Strength of the highlight.
+pub const SPECULAR: f32 = 0.25;
+
+/// Everything that a rendering needs.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Vertices of all meshes.
+    pub vertices: Vec<Vertex>,
+    /// Triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// The light.
+    pub light: DpsmLight<f32>,
+    /// The light's linear colour.
+    pub color: Vec3,
+    /// Constant bias in units of depth.
+    pub bias: f32,
+    /// The camera.
+    pub view: View,
+    /// The settings that the frame was made with.
+    pub settings: Settings,
+}
+
+/// A picture: sRGB bytes, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green, blue, alpha.
+    pub pixels: Vec<[u8; 4]>,
+}
+
+/// A rendering.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The lit image.
+    pub lit: Picture,
+    /// The stored maps, one layer a hemisphere.
+    pub maps: DepthMaps,
+    /// What the light sees of each hemisphere, where asked for.
+    pub views: Vec<Picture>,
+    /// Each pass and its time.
+    pub timings: Vec<(String, Duration)>,
+}
+
+/// Bad settings.
+#[derive(Debug, thiserror::Error, PartialEq)]
+pub enum FrameError {
+    /// A coordinate that is not a usable number.
+    #[error(
+        "{what} {value} is outside float range; each coordinate must be a number between -{LARGEST:e} and {LARGEST:e}"
+    )]
+    Range {
+        /// Which coordinate.
+        what: &'static str,
+        /// The value.
+        value: Vec3,
+    },
+    /// The clipping spheres enclose nothing.
+    #[error(
+        "near {near} must be above 0 and below far {far}; set --near and --far, or leave them out"
+    )]
+    Spheres {
+        /// Near sphere's radius.
+        near: f32,
+        /// Far sphere's radius.
+        far: f32,
+    },
+    /// A bias that leaves no depth.
+    #[error("bias {0} must be at least 0 and below 0.5, in units of depth")]
+    Bias(f32),
+    /// An image or map size of 0 or too large.
+    #[error("{what} {asked} must be from 1 to {limit}")]
+    Size {
+        /// Which size.
+        what: &'static str,
+        /// The value.
+        asked: u32,
+        /// The largest allowed.
+        limit: u32,
+    },
+    /// The camera looks nowhere.
+    #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
+    Camera(Vec3),
+}
+
+/// Largest coordinate: squares of sums of three stay finite in f32.
+pub const LARGEST: f32 = 1e18;
+
+/// Largest map or image side without an adapter, WebGPU's usual limit on large ones.
+pub const LARGEST_SIZE: u32 = 16384;
+
+/// Guard band that keeps the 2 x 2 texels of any lookup up to the rim inside the stored disk:
+/// the diagonal of a texel, sqrt(2) texels of 2 (1 + g) / N, solved for g.
+pub fn guard_band(size: u32) -> f32 {
+    let diagonal = 2.0 * std::f32::consts::SQRT_2;
+    (diagonal / (size as f32 - diagonal).max(diagonal)).min(1.0)
+}
+
+/// Brabec's constant bias in units of depth: what a receiver at the far sphere needs at 45 degrees
+/// incidence, half a texel's diagonal off, sqrt(2) / 2 texel of 4 (1 + guard) / N rad, plus one
+/// quantum of the format.
+pub fn constant_bias(size: u32, format: Format) -> f32 {
+    let pitch = 4.0 * (1.0 + guard_band(size)) / size as f32;
+    (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
+}
+
+impl Frame {
+    /// Checks the settings and gathers what the passes read.
+    ///
+    /// `axis` is the light's main axis; `hemispherical` lights have one map around it.
+    pub fn new(
+        scene: &Scene,
+        position: Vec3,
+        axis: Vec3,
+        hemispherical: bool,
+        camera: &Camera,
+        settings: Settings,
+    ) -> Result<Self, FrameError> {
+        check("the light's position", position)?;
+        check("the camera's eye", camera.eye)?;
+        check("the camera's target", camera.target)?;
+        check_size("--size", settings.size, LARGEST_SIZE)?;
+        check_size("image width", settings.image[0], LARGEST_SIZE)?;
+        check_size("image height", settings.image[1], LARGEST_SIZE)?;
+        let mut vertices = Vec::new();
+        let mut triangles = Vec::new();
+        for mesh in &scene.meshes {
+            let base = vertices.len() as u32;
+            let corner = |(&position, &normal): (&Vec3, &Vec3)| Vertex {
+                position,
+                normal,
+                albedo: mesh.albedo,
+            };
+            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(corner));
+            triangles.extend(mesh.triangles.iter().map(|t| t.map(|index| base + index)));
+        }
+        for vertex in &vertices {
+            check("the scene's vertex", vertex.position)?;
+        }
+        let bias = settings
+            .bias
+            .unwrap_or_else(|| constant_bias(settings.size, settings.format));
+        if !(0.0..0.5).contains(&bias) {
+            return Err(FrameError::Bias(bias));
+        }
+        let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
+        let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
+        let far = settings.far.unwrap_or(reach / (1.0 - bias) * FAR_SLACK);
+        let near = settings.near.unwrap_or(far * NEAR_SHARE);
+        if !(near > 0.0 && near < far && far.is_finite()) {
+            return Err(FrameError::Spheres { near, far });
+        }
+        let [right, up, forward] = basis(axis.as_dvec3()).map(|row| float(row.as_vec3()));
+        let light = DpsmLight {
+            position: float(position),
+            near,
+            right,
+            far,
+            up,
+            guard: guard_band(settings.size),
+            forward,
+            size: settings.size as f32,
+            rectangle: scalar::Vec4::new(0.0, 0.0, 1.0, 1.0),
+            first_layer: 0,
+            placement: DPSM_LAYERS,
+            hemispheres: if hemispherical {
+                DPSM_HEMISPHERICAL
+            } else {
+                DPSM_OMNIDIRECTIONAL
+            },
+            padding: 0,
+        };
+        let view = View::new(camera, settings.image)?;
+        Ok(Self {
+            vertices,
+            triangles,
+            light,
+            color: Vec3::ONE,
+            bias,
+            view,
+            settings,
+        })
+    }
+}
+
+/// Far's distance beyond the farthest vertex, so that rounding never clips it.
+const FAR_SLACK: f32 = 1.001;
+
+/// Near as a share of far.
+const NEAR_SHARE: f32 = 1e-3;
+
+/// The camera's near plane as a share of the distance to its target.
+const CAMERA_NEAR_SHARE: f64 = 1e-3;
+
+impl View {
+    /// The view of a camera that makes an image of `width` x `height`.
+    pub fn new(camera: &Camera, [width, height]: [u32; 2]) -> Result<Self, FrameError> {
+        let towards = camera.target.as_dvec3() - camera.eye.as_dvec3();
+        let Some(forward) = towards.try_normalize() else {
+            return Err(FrameError::Camera(camera.eye));
+        };
+        let right = forward.cross(camera.up.as_dvec3());
+        let right = right
+            .try_normalize()
+            .unwrap_or_else(|| forward.any_orthonormal_vector());
+        let up = right.cross(forward);
+        let cotangent = 1.0 / (f64::from(camera.vertical_fov) / 2.0).tan();
+        Ok(Self {
+            eye: camera.eye,
+            right: right.as_vec3(),
+            up: up.as_vec3(),
+            forward: forward.as_vec3(),
+            near: (towards.length() * CAMERA_NEAR_SHARE) as f32,
+            scale: [
+                (cotangent * f64::from(height) / f64::from(width)) as f32,
+                cotangent as f32,
+            ],
+        })
+    }
+}
+
+impl Picture {
+    /// The RGBA bytes.
+    pub fn bytes(&self) -> &[u8] {
+        self.pixels.as_flattened()
+    }
+}
+
+/// The light space whose +z is `axis`: right, up, forward with right x up = forward.
+pub fn basis(axis: DVec3) -> [DVec3; 3] {
+    let forward = axis.try_normalize().unwrap_or(DVec3::NEG_Y);
+    let helper = if forward.x.abs() < 0.9 {
+        DVec3::X
+    } else {
+        DVec3::Z
+    };
+    let right = (helper - forward * forward.dot(helper)).normalize();
+    [right, forward.cross(right), forward]
+}
+
+/// glam's vector as the ports' one.
+pub fn float(v: Vec3) -> scalar::Vec3<f32> {
+    scalar::Vec3::new(v.x, v.y, v.z)
+}
+
+fn check(what: &'static str, value: Vec3) -> Result<(), FrameError> {
+    match value.abs().max_element() <= LARGEST && value.is_finite() {
+        true => Ok(()),
+        false => Err(FrameError::Range { what, value }),
+    }
+}
+
+/// A size against its limit.
+pub fn check_size(what: &'static str, asked: u32, limit: u32) -> Result<(), FrameError> {
+    match (1..=limit).contains(&asked) {
+        true => Ok(()),
+        false => Err(FrameError::Size { what, asked, limit }),
+    }
+}

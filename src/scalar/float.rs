@@ -1,0 +1,178 @@
+//! The arithmetic that the ports are generic over, and the vectors built on it.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number type that a port can run on: f32 mirrors the shader, f64 is the reference.
+///
+/// Only IEEE operations, so results are the same on every machine.
+pub trait Float:
+    Copy
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A constant; rounded to the nearest value of the type.
+    fn lit(value: f64) -> Self;
+    /// The value in f64.
+    fn value(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// The larger one.
+    fn max(self, other: Self) -> Self;
+    /// The smaller one.
+    fn min(self, other: Self) -> Self;
+    /// WGSL's clamp.
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+}
+
+macro_rules! float {
+    ($t:ty) => {
+        impl Float for $t {
+            fn lit(value: f64) -> Self {
+                value as $t
+            }
+            fn value(self) -> f64 {
+                self as f64
+            }
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            fn abs(self) -> Self {
+                self.abs()
+            }
+            fn max(self, other: Self) -> Self {
+                self.max(other)
+            }
+            fn min(self, other: Self) -> Self {
+                self.min(other)
+            }
+        }
+    };
+}
+float!(f32);
+float!(f64);
+
+macro_rules! vector {
+    ($(#[$doc:meta])* $name:ident { $($c:ident),+ }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct $name<T> {
+            $(
+                #[allow(missing_docs)]
+                pub $c: T,
+            )+
+        }
+
+        impl<T: Float> $name<T> {
+            /// The vector with these components.
+            pub fn new($($c: T),+) -> Self {
+                Self { $($c),+ }
+            }
+
+            /// The vector with every component `value`.
+            pub fn splat(value: T) -> Self {
+                Self { $($c: value),+ }
+            }
+
+            /// WGSL's dot product, summed from left to right.
+            pub fn dot(self, other: Self) -> T {
+                let products = [$(self.$c * other.$c),+];
+                products[1..].iter().fold(products[0], |sum, &product| sum + product)
+            }
+
+            /// WGSL's length: the root of the dot product with itself.
+            pub fn length(self) -> T {
+                self.dot(self).sqrt()
+            }
+        }
+
+        vector!(@each $name { $($c),+ } Add add +, Sub sub -, Mul mul *);
+
+        impl<T: Float> Mul<T> for $name<T> {
+            type Output = Self;
+            fn mul(self, k: T) -> Self {
+                Self { $($c: self.$c * k),+ }
+            }
+        }
+
+        impl<T: Float> Div<T> for $name<T> {
+            type Output = Self;
+            fn div(self, k: T) -> Self {
+                Self { $($c: self.$c / k),+ }
+            }
+        }
+    };
+    (@each $name:ident $fields:tt $($op:ident $f:ident $sign:tt),+) => {
+        $( vector!(@one $name $fields $op $f $sign); )+
+    };
+    (@one $name:ident { $($c:ident),+ } $op:ident $f:ident $sign:tt) => {
+        impl<T: Float> $op for $name<T> {
+            type Output = Self;
+            fn $f(self, other: Self) -> Self {
+                Self { $($c: self.$c $sign other.$c),+ }
+            }
+        }
+    };
+}
+vector! {
+    /// WGSL's vec2.
+    Vec2 { x, y }
+}
+vector! {
+    /// WGSL's vec3.
+    Vec3 { x, y, z }
+}
+vector! {
+    /// WGSL's vec4.
+    Vec4 { x, y, z, w }
+}
+
+#[cfg(feature = "gpu")]
+mod bytes {
+    use super::{Vec2, Vec3, Vec4};
+
+    macro_rules! pod {
+        ($($name:ident: $words:literal),+) => {$(
+            const _: () = assert!(size_of::<$name<f32>>() == 4 * $words);
+            // SAFETY: repr(C), every member an f32, and no padding by the size above.
+            unsafe impl bytemuck::Zeroable for $name<f32> {}
+            // SAFETY: as above; any bits are an f32.
+            unsafe impl bytemuck::Pod for $name<f32> {}
+        )+};
+    }
+    pod!(Vec2: 2, Vec3: 3, Vec4: 4);
+}
+
+impl<T: Float> Vec3<T> {
+    /// The swizzle `xy`.
+    pub fn xy(self) -> Vec2<T> {
+        Vec2::new(self.x, self.y)
+    }
+}
+
+impl<T: Float> Vec4<T> {
+    /// The swizzle `xy`.
+    pub fn xy(self) -> Vec2<T> {
+        Vec2::new(self.x, self.y)
+    }
+
+    /// The swizzle `zw`.
+    pub fn zw(self) -> Vec2<T> {
+        Vec2::new(self.z, self.w)
+    }
+}
+
+/// WGSL's select: `yes` where the condition holds.
+pub fn select<V>(no: V, yes: V, condition: bool) -> V {
+    if condition { yes } else { no }
+}

@@ -1,0 +1,21 @@
+//! Scalar ports: each module of `wgsl/` again in Rust, under the same names and in the same order,
+//! generic over the float type. At f32 they mirror the shader, at f64 they are the reference.
+//!
+//! Domains and bounds are those of the WGSL functions; no dependency is needed.
+//!
+//! ```
+//! use dpsm::scalar::{float::Vec3, paraboloid::dpsm_project};
+//! let rim = dpsm_project(Vec3::new(3.0_f64, 4.0, 0.0));
+//! assert_eq!((rim.x, rim.y), (0.6, 0.8));
+//! ```
+
+pub mod caster;
+pub mod depth;
+pub mod float;
+pub mod hemisphere;
+pub mod light;
+pub mod maps;
+pub mod paraboloid;
+pub mod ports;
+pub mod shade;
+pub mod visibility;

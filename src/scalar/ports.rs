@@ -1,0 +1,151 @@
+//! The ports by name, callable on flat words, as the evaluator and `dpsm eval` need them.
+
+use super::caster::*;
+use super::depth::*;
+use super::float::{Float, Vec2, Vec3, Vec4};
+use super::hemisphere::*;
+use super::light::*;
+use super::paraboloid::*;
+use super::shade::*;
+use super::visibility::*;
+
+/// One 32-bit component of an argument or a result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Word<T> {
+    /// A component of type f32 in the shader.
+    Float(T),
+    /// A component of type u32 or bool in the shader.
+    Integer(u32),
+}
+
+/// A value that is a fixed list of words, in the order of the shader's members.
+pub trait Flat<T>: Sized {
+    /// Takes the value's words from the list; `None` when one is missing or of the other kind.
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self>;
+    /// Appends the value's words.
+    fn write(self, words: &mut Vec<Word<T>>);
+}
+
+macro_rules! float {
+    ($t:ty) => {
+        impl Flat<$t> for $t {
+            fn read(words: &mut dyn Iterator<Item = Word<$t>>) -> Option<Self> {
+                match words.next()? {
+                    Word::Float(value) => Some(value),
+                    Word::Integer(_) => None,
+                }
+            }
+            fn write(self, words: &mut Vec<Word<$t>>) {
+                words.push(Word::Float(self));
+            }
+        }
+    };
+}
+float!(f32);
+float!(f64);
+
+impl<T> Flat<T> for u32 {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        match words.next()? {
+            Word::Integer(value) => Some(value),
+            Word::Float(_) => None,
+        }
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        words.push(Word::Integer(self));
+    }
+}
+
+impl<T> Flat<T> for bool {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        u32::read(words).map(|value| value != 0)
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        u32::from(self).write(words);
+    }
+}
+
+macro_rules! flat {
+    ($($name:ident { $($member:ident),+ })+) => {$(
+        impl<T: Float + Flat<T>> Flat<T> for $name<T> {
+            fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+                Some(Self { $($member: Flat::read(words)?),+ })
+            }
+            fn write(self, words: &mut Vec<Word<T>>) {
+                $( self.$member.write(words); )+
+            }
+        }
+    )+};
+}
+flat! {
+    Vec2 { x, y }
+    Vec3 { x, y, z }
+    Vec4 { x, y, z, w }
+    DpsmLight {
+        position, near, right, far, up, guard, forward, size, rectangle,
+        first_layer, placement, hemispheres, padding
+    }
+    DpsmCasterVertex { clip, hemisphere_value }
+    DpsmCasterFragment { depth, keep }
+    DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
+    DpsmReceiverVertex { front, back, depth, hemisphere_value }
+}
+
+/// A function of flat arguments.
+trait Callable<T, Arguments> {
+    fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>>;
+}
+
+macro_rules! callable {
+    ($($argument:ident)+) => {
+        impl<T, F, R: Flat<T>, $($argument: Flat<T>),+> Callable<T, ($($argument,)+)> for F
+        where
+            T: Copy,
+            F: Fn($($argument),+) -> R,
+        {
+            fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
+                let mut words = words.iter().copied();
+                let result = self($($argument::read(&mut words)?),+);
+                if words.next().is_some() {
+                    return None;
+                }
+                let mut out = Vec::new();
+                result.write(&mut out);
+                Some(out)
+            }
+        }
+    };
+}
+callable!(A);
+callable!(A B);
+callable!(A B C);
+callable!(A B C D);
+
+macro_rules! ports {
+    ($($module:ident { $($function:ident),+ $(,)? })+) => {
+        /// The functions that have a port here: module and name, in the modules' order.
+        pub const PORTS: &[(&str, &str)] = &[$($((stringify!($module), stringify!($function)),)+)+];
+
+        /// Calls a port on flat words; `None` for an unknown name or words that do not fit.
+        pub fn call<T: Float + Flat<T>>(function: &str, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
+            match function {
+                $($( stringify!($function) => $function::<T>.apply(words), )+)+
+                _ => None,
+            }
+        }
+    };
+}
+ports! {
+    hemisphere { dpsm_to_light, dpsm_hemisphere, dpsm_flip, dpsm_invert }
+    paraboloid {
+        dpsm_project, dpsm_unproject, dpsm_texel_pitch, dpsm_texel_solid_angle,
+        dpsm_disk_to_texture, dpsm_texture_to_disk,
+    }
+    light { dpsm_light_layer, dpsm_light_coordinates }
+    depth { dpsm_depth, dpsm_distance, dpsm_within, dpsm_receiver_depth }
+    caster {
+        dpsm_caster_border, dpsm_caster_vertex, dpsm_caster_keep, dpsm_caster_fragment,
+    }
+    visibility { dpsm_lookup, dpsm_receiver_vertex }
+    shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight }
+}

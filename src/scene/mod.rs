@@ -1,0 +1,232 @@
+//! Scenes: triangle meshes, point lights and a camera, built in or read from a file.
+//!
+//! Coordinates are right-handed with y up, lengths are metres, colours are linear RGB.
+//!
+//! ```
+//! use dpsm::scene::{Options, open};
+//!
+//! let scene = open("brabec-room", &Options::default())?;
+//! let light = scene.default_light();
+//! let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
+//! assert!(scene.triangle_count() > 6 * 8 * 8 * 2);
+//! assert!(scene.bounds().contains(camera.eye));
+//! # Ok::<(), dpsm::scene::SceneError>(())
+//! ```
+
+mod load;
+mod procedural;
+mod shapes;
+mod view;
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+pub use procedural::BUILT_IN;
+
+/// A triangle mesh in world space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// The file's name for it, or a made-up one; not necessarily unique.
+    pub name: String,
+    /// Metres, all finite.
+    pub positions: Vec<Vec3>,
+    /// Unit length, one for each position.
+    pub normals: Vec<Vec3>,
+    /// Indices into `positions`, counter-clockwise seen from the visible side.
+    pub triangles: Vec<[u32; 3]>,
+    /// Diffuse reflectance, linear RGB, each component in [0, 1].
+    pub albedo: Vec3,
+}
+
+/// A point light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// Metres, world space.
+    pub position: Vec3,
+    /// The unit main axis of a hemispherical light; `None` for an omnidirectional one.
+    pub axis: Option<Vec3>,
+    /// Linear RGB, the largest component is 1.
+    pub color: Vec3,
+}
+
+/// A perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Metres, world space.
+    pub eye: Vec3,
+    /// A point the camera looks at, never the eye itself.
+    pub target: Vec3,
+    /// Unit length, not parallel to the viewing direction.
+    pub up: Vec3,
+    /// Radians, in (0, pi).
+    pub vertical_fov: f32,
+}
+
+/// Meshes, lights and a camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The built-in name, or the file's name without its extension.
+    pub name: String,
+    /// At least one triangle in all.
+    pub meshes: Vec<Mesh>,
+    /// Empty when the file has none; see [`Scene::default_light`].
+    pub lights: Vec<Light>,
+    /// `None` when the file has none; see [`Scene::default_camera`].
+    pub camera: Option<Camera>,
+    /// What was left out or repaired while reading, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// An axis-aligned box in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates.
+    pub min: Vec3,
+    /// Largest coordinates.
+    pub max: Vec3,
+}
+
+impl Bounds {
+    /// The middle.
+    pub fn center(&self) -> Vec3 {
+        // Halves first: the sum of two large coordinates would overflow.
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// Lengths of the sides.
+    pub fn extent(&self) -> Vec3 {
+        self.max - self.min
+    }
+
+    /// True for points inside or on the surface.
+    pub fn contains(&self, point: Vec3) -> bool {
+        point.cmpge(self.min).all() && point.cmple(self.max).all()
+    }
+}
+
+impl Scene {
+    /// The smallest box around all positions; a point at the origin if there are none.
+    pub fn bounds(&self) -> Bounds {
+        let positions = || self.meshes.iter().flat_map(|mesh| &mesh.positions).copied();
+        Bounds {
+            min: positions().reduce(Vec3::min).unwrap_or_default(),
+            max: positions().reduce(Vec3::max).unwrap_or_default(),
+        }
+    }
+
+    /// Triangles of all meshes.
+    pub fn triangle_count(&self) -> usize {
+        self.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
+    }
+
+    /// The corners of every triangle, mesh after mesh.
+    pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        self.meshes.iter().flat_map(|mesh| {
+            mesh.triangles
+                .iter()
+                .map(|corners| corners.map(|i| mesh.positions[i as usize]))
+        })
+    }
+}
+
+/// What [`open`] may vary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Each wall, floor and ceiling of a built-in scene is a grid of `walls` x `walls` quads:
+    /// 1 to [`Options::MAX_WALLS`], 8 in Brabec's paper and by default. Files ignore it.
+    pub walls: u32,
+}
+
+impl Options {
+    /// Six walls of this many quads a side are 12.6 million triangles.
+    pub const MAX_WALLS: u32 = 1024;
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { walls: 8 }
+    }
+}
+
+/// Builds the scene of [`BUILT_IN`] with this name, or reads a `.obj`, `.gltf` or `.glb` file.
+///
+/// # Errors
+/// See [`SceneError`]. What can be repaired or left out is not an error but a line in
+/// [`Scene::warnings`]. Bad input never panics.
+pub fn open(name_or_path: &str, options: &Options) -> Result<Scene, SceneError> {
+    if BUILT_IN.iter().any(|(name, _)| *name == name_or_path) {
+        return procedural::build(name_or_path, options.walls);
+    }
+    let path = Path::new(name_or_path);
+    let looks_like_a_path = path.extension().is_some() || path.components().nth(1).is_some();
+    if looks_like_a_path || path.exists() {
+        load::read(path)
+    } else {
+        Err(SceneError::UnknownName {
+            name: name_or_path.into(),
+            hint: nearest_built_in(name_or_path)
+                .map(|nearest| format!("; did you mean `{nearest}`?"))
+                .unwrap_or_default(),
+        })
+    }
+}
+
+/// A built-in name that starts with what was typed or is a few typing errors away.
+fn nearest_built_in(typed: &str) -> Option<&'static str> {
+    const MAX_TYPING_ERRORS: usize = 3;
+    let typed = typed.to_lowercase();
+    let names = || BUILT_IN.iter().map(|(name, _)| *name);
+    let prefixed = names().find(|name| !typed.is_empty() && name.starts_with(&typed));
+    prefixed.or_else(|| {
+        names()
+            .map(|name| (strsim::damerau_levenshtein(name, &typed), name))
+            .min()
+            .filter(|(errors, _)| *errors <= MAX_TYPING_ERRORS)
+            .map(|(_, name)| name)
+    })
+}
+
+fn built_in_names() -> String {
+    BUILT_IN.map(|(name, _)| name).join(", ")
+}
+
+/// Why a scene could not be opened, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what the variants and fields are
+pub enum SceneError {
+    #[error(
+        "no scene is called `{name}`{hint} (built in: {}; or give the path of a .obj, .gltf or .glb file)",
+        built_in_names()
+    )]
+    UnknownName { name: String, hint: String },
+    #[error("walls of {walls} x {walls} quads: use 1 to {}", Options::MAX_WALLS)]
+    Walls { walls: u32 },
+    #[error("cannot read `{path}`: {source}; check the path and its permissions")]
+    Read {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("`{path}` is a directory; name a .obj, .gltf or .glb file in it")]
+    Directory { path: PathBuf },
+    #[error("`{path}` is empty (0 bytes); export it again")]
+    EmptyFile { path: PathBuf },
+    #[error("`{path}`: unknown extension `{extension}`; convert it to .glb, .gltf or .obj")]
+    UnknownExtension { path: PathBuf, extension: String },
+    #[error("`{path}`: {what}; export it again, or check it with a validator")]
+    Malformed { path: PathBuf, what: String },
+    #[error(
+        "`{path}` needs the buffer `{uri}`: {what}; put it where the file expects it, or export a .glb, which holds its buffers"
+    )]
+    Buffer {
+        path: PathBuf,
+        uri: String,
+        what: String,
+    },
+    #[error(
+        "`{path}` requires the glTF extension `{extension}`, which is not supported; export it without"
+    )]
+    RequiredExtension { path: PathBuf, extension: String },
+    #[error("`{path}` has no triangles, only {found}; export its meshes as triangles")]
+    Empty { path: PathBuf, found: String },
+}

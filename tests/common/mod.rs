@@ -1,0 +1,200 @@
+//! What the numeric tests share: inputs over a function's domain, and bounds in eps.
+#![allow(dead_code)] // each test file uses its part
+
+use dpsm::scalar::float::Vec3;
+use dpsm::scalar::light::DpsmLight;
+use fastrand::Rng;
+
+/// eps = 2^-23 of docs/numerics.md, the error of one WGSL operation.
+pub const EPS: f64 = 1.0 / (1u64 << 23) as f64;
+
+/// The same for f64.
+pub const EPS_DOUBLE: f64 = f64::EPSILON;
+
+/// Cases that each numeric check runs.
+pub const CASES: usize = 200_000;
+
+/// The generator of a named test, the same in every run.
+pub fn rng(name: &str) -> Rng {
+    Rng::with_seed(
+        name.bytes()
+            .fold(7_u64, |seed, byte| seed.wrapping_mul(31) + u64::from(byte)),
+    )
+}
+
+/// Uniform in [low, high).
+pub fn uniform(rng: &mut Rng, low: f32, high: f32) -> f32 {
+    low + (high - low) * rng.f32()
+}
+
+/// Either sign, magnitude log-uniform between two powers of two.
+pub fn spread(rng: &mut Rng, low: i32, high: i32) -> f32 {
+    let magnitude = f64::from(low) + f64::from(high - low) * rng.f64();
+    let sign = if rng.bool() { 1.0 } else { -1.0 };
+    (magnitude.exp2() * sign) as f32
+}
+
+/// A point whose components' magnitudes are log-uniform in [2^low, 2^high]: nearly every
+/// neighbourhood of axes, poles and seam.
+pub fn point(rng: &mut Rng, low: i32, high: i32) -> Vec3<f32> {
+    Vec3::new(
+        spread(rng, low, high),
+        spread(rng, low, high),
+        spread(rng, low, high),
+    )
+}
+
+/// A unit vector, uniform over the sphere up to rounding.
+pub fn unit(rng: &mut Rng) -> Vec3<f32> {
+    loop {
+        let [x, y, z] = [0; 3].map(|_| f64::from(uniform(rng, -1.0, 1.0)));
+        let length = (x * x + y * y + z * z).sqrt();
+        if (0.1..=1.0).contains(&length) {
+            return Vec3::new(x / length, y / length, z / length).narrow();
+        }
+    }
+}
+
+/// A light with a random place, rotation and spheres.
+pub fn light(rng: &mut Rng) -> DpsmLight<f32> {
+    let forward = unit(rng).widen();
+    let other = unit(rng).widen();
+    let right = cross(forward, other);
+    let right = right / right.length();
+    let near = uniform(rng, 0.01, 1.0);
+    DpsmLight {
+        position: point(rng, -4, 8),
+        near,
+        right: right.narrow(),
+        far: near * uniform(rng, 2.0, 1000.0),
+        up: cross(forward, right).narrow(),
+        guard: uniform(rng, 0.0, 1.0),
+        forward: forward.narrow(),
+        ..dpsm::cases::light(rng.u32(0..2))
+    }
+}
+
+/// The same light in f64.
+pub fn widen_light(light: DpsmLight<f32>) -> DpsmLight<f64> {
+    let rectangle = light.rectangle;
+    DpsmLight {
+        position: light.position.widen(),
+        near: light.near.into(),
+        right: light.right.widen(),
+        far: light.far.into(),
+        up: light.up.widen(),
+        guard: light.guard.into(),
+        forward: light.forward.widen(),
+        size: light.size.into(),
+        rectangle: dpsm::scalar::float::Vec4 {
+            x: rectangle.x.into(),
+            y: rectangle.y.into(),
+            z: rectangle.z.into(),
+            w: rectangle.w.into(),
+        },
+        first_layer: light.first_layer,
+        placement: light.placement,
+        hemispheres: light.hemispheres,
+        padding: 0,
+    }
+}
+
+/// Cross product.
+pub fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
+    Vec3::new(
+        a.y * b.z - a.z * b.y,
+        a.z * b.x - a.x * b.z,
+        a.x * b.y - a.y * b.x,
+    )
+}
+
+/// Angle in radians between two directions, accurate also where it is small.
+pub fn angle(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
+    cross(a, b).length().atan2(a.dot(b))
+}
+
+/// Between f32 and f64.
+pub trait Widen {
+    /// In f64.
+    type Wide;
+    /// Exactly the same value.
+    fn widen(self) -> Self::Wide;
+}
+
+/// Between f64 and f32.
+pub trait Narrow {
+    /// In f32.
+    type Slim;
+    /// Rounded.
+    fn narrow(self) -> Self::Slim;
+}
+
+impl Widen for Vec3<f32> {
+    type Wide = Vec3<f64>;
+    fn widen(self) -> Vec3<f64> {
+        Vec3 {
+            x: self.x.into(),
+            y: self.y.into(),
+            z: self.z.into(),
+        }
+    }
+}
+
+impl Narrow for Vec3<f64> {
+    type Slim = Vec3<f32>;
+    fn narrow(self) -> Vec3<f32> {
+        Vec3 {
+            x: self.x as f32,
+            y: self.y as f32,
+            z: self.z as f32,
+        }
+    }
+}
+
+impl Widen for dpsm::scalar::float::Vec2<f32> {
+    type Wide = dpsm::scalar::float::Vec2<f64>;
+    fn widen(self) -> Self::Wide {
+        dpsm::scalar::float::Vec2 {
+            x: self.x.into(),
+            y: self.y.into(),
+        }
+    }
+}
+
+/// The largest ratio of error to bound, with its input: a check that says how close it came.
+#[derive(Debug, Default)]
+pub struct Worst {
+    ratio: f64,
+    input: String,
+}
+
+impl Worst {
+    /// Notes one error beside its bound.
+    pub fn note(&mut self, error: f64, bound: f64, input: impl std::fmt::Debug) {
+        let ratio = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error / bound
+        };
+        if error != 0.0 && ratio > self.ratio {
+            *self = Self {
+                ratio,
+                input: format!("{input:?}: error {error:e}, bound {bound:e}"),
+            };
+        }
+    }
+
+    /// Fails where an error was above its bound.
+    pub fn check(self, name: &str) {
+        println!(
+            "{name}: at most {:.3} of the bound, at {}",
+            self.ratio, self.input
+        );
+        assert!(
+            self.ratio <= 1.0,
+            "{name}: {:.3} of the bound at {}",
+            self.ratio,
+            self.input
+        );
+    }
+}

@@ -1,0 +1,251 @@
+//! OBJ files, and errors that any file can cause.
+
+use std::path::Path;
+
+use glam::{Vec3, vec3};
+
+use crate::{assert_valid, error, file, read, shared};
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn groups_and_materials_are_meshes_with_their_diffuse_colour() {
+    let materials = "newmtl red\nKd 0.5 0.1 0\nnewmtl grey\nKd 0.25\nnewmtl odd\nKd nan 2 -1\n";
+    file("materials.mtl", materials);
+    let faces = "o left\nusemtl red\nf 1 2 3\nusemtl grey\nf 1 3 4\nusemtl red\nf 4 3 1\n\
+                 g right\nf 1 2 4\nusemtl odd\nf 1 2 4\nusemtl none\nf 1 2 4\n";
+    let scene = read(&file(
+        "groups.obj",
+        format!("mtllib materials.mtl\n{SQUARE}{faces}"),
+    ));
+    let found: Vec<_> = scene
+        .meshes
+        .iter()
+        .map(|mesh| (mesh.name.as_str(), mesh.triangles.len(), mesh.albedo))
+        .collect();
+    let red = vec3(0.5, 0.1, 0.0);
+    assert_eq!(
+        found,
+        [
+            ("left/red", 2, red),
+            ("left/grey", 1, Vec3::splat(0.25)),
+            ("right/red", 1, red),
+            ("right/odd", 1, vec3(0.0, 1.0, 0.0)),
+            ("right/none", 1, Vec3::splat(0.8)),
+        ]
+    );
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.name, "groups");
+    assert!(scene.camera.is_none() && scene.lights.is_empty());
+}
+
+#[test]
+fn missing_material_library_is_only_a_warning() {
+    let scene = read(&file(
+        "no_mtl.obj",
+        format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n"),
+    ));
+    assert_eq!(scene.warnings.len(), 1);
+    let warning = &scene.warnings[0];
+    assert!(
+        warning.starts_with("material library `gone.mtl` cannot be read ("),
+        "{warning}"
+    );
+    assert!(warning.ends_with("): its materials are grey"), "{warning}");
+}
+
+#[test]
+fn missing_normals_are_the_faces_and_given_ones_are_kept_and_normalised() {
+    let text = format!("{SQUARE}vn 0 3 4\nf 1 2 3\nf 1//1 3//1 4//1\n");
+    let mesh = &read(&file("normals.obj", text)).meshes[0];
+    let normals = |i: usize| mesh.triangles[i].map(|i| mesh.normals[i as usize]);
+    assert_eq!(normals(0), [Vec3::Z; 3]);
+    assert!(
+        normals(1)
+            .iter()
+            .all(|normal| normal.distance(vec3(0.0, 0.6, 0.8)) < 1e-6)
+    );
+}
+
+#[test]
+fn relative_indices_continued_lines_and_foreign_encodings_are_read() {
+    let mut bytes = b"# caf\xe9\n\r\n".to_vec();
+    bytes.extend(SQUARE.bytes());
+    bytes.extend(b"f -4/7/-1 -3 \\\n -2\r\nf 1 2 \\");
+    bytes.extend(b"\n 4");
+    let scene = read(&file("odd.obj", &bytes));
+    assert_eq!(scene.triangle_count(), 2);
+    let first = scene.triangles().next().unwrap();
+    assert_eq!(
+        first,
+        [
+            vec3(0.0, 0.0, 0.0),
+            vec3(1.0, 0.0, 0.0),
+            vec3(1.0, 1.0, 0.0)
+        ]
+    );
+}
+
+#[test]
+fn concave_polygons_are_covered_once() {
+    // A comb of three teeth: from no corner does a fan cover it.
+    let comb = [
+        (0, 0),
+        (5, 0),
+        (5, 3),
+        (4, 3),
+        (4, 1),
+        (3, 1),
+        (3, 3),
+        (2, 3),
+        (2, 1),
+        (1, 1),
+        (1, 3),
+        (0, 3),
+    ];
+    let corners: String = comb.iter().map(|(x, z)| format!("v {x} 0 {z}\n")).collect();
+    let scene = read(&file(
+        "comb.obj",
+        format!("{corners}f 1 2 3 4 5 6 7 8 9 10 11 12\n"),
+    ));
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.triangle_count(), comb.len() - 2);
+    let area: f32 = scene
+        .triangles()
+        .map(|[a, b, c]| (b - a).cross(c - a).y / -2.0)
+        .sum();
+    let size: f32 = scene
+        .triangles()
+        .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
+        .sum();
+    assert_eq!((area, size), (5.0 * 3.0 - 2.0 * 2.0, 11.0));
+
+    let bow = read(&file("bow.obj", format!("{SQUARE}f 1 2 4 3\n")));
+    assert_eq!(
+        bow.warnings,
+        ["1 polygons cross themselves and may be covered wrongly"]
+    );
+    assert_eq!(bow.triangle_count(), 2);
+}
+
+#[test]
+fn lines_and_points_are_counted_and_never_become_triangles() {
+    let scene = read(&file(
+        "lines.obj",
+        format!("{SQUARE}l 1 2 3\np 1 2 3\nf 1 2\nf 1 2 3\n"),
+    ));
+    assert_eq!(scene.triangle_count(), 1);
+    let warning = "3 points, lines or faces of fewer than three corners skipped";
+    assert_eq!(scene.warnings, [warning]);
+}
+
+#[test]
+fn unusable_vertices_and_normals_are_counted_named_and_dropped() {
+    let bad = "v nan 0 0\nv 0 inf 0\nvn 0 0 0\nvn nan 0 0\no x\n\
+               f 1 2 5\nf 1 6 5\nf 1 2 3\nf 1 2 99\nf 1 2 0\nf -9 1 2\nf 1//1 2//2 3//9\n";
+    let scene = read(&file("bad.obj", format!("{SQUARE}{bad}")));
+    assert_valid(&scene);
+    assert_eq!(scene.triangle_count(), 2);
+    assert_eq!(
+        scene.warnings,
+        [
+            "mesh `x`: 2 non-finite vertices (first: 5), 2 triangles dropped",
+            // 0 is no number in an OBJ file; -9 counts back from the sixth vertex to -2.
+            "mesh `x`: 3 vertex indices out of range (first: -2, of 6 vertices), 3 triangles dropped",
+            "mesh `x`: 3 corners have no usable normal and got their face's",
+        ]
+    );
+}
+
+#[test]
+fn triangles_without_area_keep_a_unit_normal() {
+    let scene = read(&file("flat.obj", format!("{SQUARE}f 1 1 2\nf 1 2 3\n")));
+    assert_valid(&scene);
+    assert_eq!(scene.triangle_count(), 2);
+}
+
+#[test]
+fn lines_that_cannot_be_read_are_shown() {
+    for (line, name) in [
+        ("v 1 2", "a.obj"),
+        ("f 1 x 2", "b.obj"),
+        ("vn 1 , 2", "c.obj"),
+        ("f 1/", "d.obj"),
+    ] {
+        let path = file(name, format!("{SQUARE}{line}\nf 1 2 3\n"));
+        if name == "d.obj" {
+            // An empty field is only an absent one.
+            assert_eq!(read(&path).triangle_count(), 1);
+            continue;
+        }
+        let expected = format!(
+            "`{name}`: cannot read line 5: `{line}`; export it again, or check it with a validator"
+        );
+        assert_eq!(error(&path), expected);
+    }
+}
+
+#[test]
+fn files_without_triangles_say_what_was_found() {
+    let remedy = "export its meshes as triangles";
+    let points = file("points.obj", format!("{SQUARE}p 1\n"));
+    assert_eq!(
+        error(&points),
+        format!(
+            "`points.obj` has no triangles, only 4 vertices and 0 faces; \
+             1 points, lines or faces of fewer than three corners skipped; {remedy}"
+        )
+    );
+    let all_bad = file("all_bad.obj", "v nan 0 0\nf 1 1 1\n");
+    assert_eq!(
+        error(&all_bad),
+        format!(
+            "`all_bad.obj` has no triangles, only 1 vertices and 1 faces; mesh `unnamed`: \
+             1 non-finite vertices (first: 1), 1 triangles dropped; {remedy}"
+        )
+    );
+}
+
+#[test]
+fn paths_that_are_no_scene_files_are_errors_with_a_remedy() {
+    assert_eq!(
+        error(&file("empty.obj", "")),
+        "`empty.obj` is empty (0 bytes); export it again"
+    );
+    let unknown = error(&file("scene.FBX", "x"));
+    assert_eq!(
+        unknown,
+        "`scene.FBX`: unknown extension `fbx`; convert it to .glb, .gltf or .obj"
+    );
+    let none = error(&file("scene", "x"));
+    assert_eq!(
+        none,
+        "`scene`: unknown extension ``; convert it to .glb, .gltf or .obj"
+    );
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("folder.obj");
+    std::fs::create_dir_all(&folder).unwrap();
+    assert_eq!(
+        error(&folder),
+        "`folder.obj` is a directory; name a .obj, .gltf or .glb file in it"
+    );
+    let missing = error(Path::new("no/such/file.glb"));
+    assert!(missing.starts_with("cannot read `file.glb`: "), "{missing}");
+    assert!(
+        missing.ends_with("; check the path and its permissions"),
+        "{missing}"
+    );
+}
+
+#[test]
+fn sponza_is_read_whole() {
+    let Some(scene) = shared("sponza.obj") else {
+        return;
+    };
+    assert_valid(&scene);
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.triangle_count(), 76_154);
+    let names: std::collections::BTreeSet<_> = scene.meshes.iter().map(|mesh| &mesh.name).collect();
+    assert_eq!(names.len(), scene.meshes.len());
+    let extent = scene.bounds().extent();
+    assert!(extent.distance(vec3(34.82, 16.56, 15.6)) < 0.01, "{extent}");
+}
