@@ -79,12 +79,8 @@ pub fn of(function: &str) -> Vec<Case> {
     let layers = light(DPSM_LAYERS);
     let atlas = light(DPSM_ATLAS);
     let unit = Vec3::new(0.6_f32, 0.0, 0.8);
-    let both = |name: &str| {
-        [
-            (format!("{name}, layers"), layers),
-            (format!("{name}, atlas"), atlas),
-        ]
-    };
+    let both =
+        |name: &str| [(format!("{name}, layers"), layers), (format!("{name}, atlas"), atlas)];
     let mut cases = Cases::default();
     match function {
         "dpsm_to_light" => {
@@ -118,9 +114,7 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_disk_to_texture" | "dpsm_texture_to_disk" => {
             for (name, uv) in DISKS {
-                cases.add(*name, |words| {
-                    (disk(uv).write(words), (1.0_f32 / 64.0).write(words))
-                });
+                cases.add(*name, |words| (disk(uv).write(words), (1.0_f32 / 64.0).write(words)));
             }
         }
         "dpsm_light_layer" => {
@@ -131,64 +125,39 @@ pub fn of(function: &str) -> Vec<Case> {
         "dpsm_light_coordinates" => {
             for (name, light) in both("back map") {
                 cases.add(name, |words| {
-                    (
-                        light.write(words),
-                        1_u32.write(words),
-                        Vec2::new(0.5_f32, 1.0).write(words),
-                    );
+                    (light.write(words), 1_u32.write(words), Vec2::new(0.5_f32, 1.0).write(words));
                 });
             }
         }
         "dpsm_depth" | "dpsm_within" | "dpsm_receiver_depth" => {
             for (name, [l, near, far]) in DISTANCES {
-                cases.add(*name, |words| {
-                    (l.write(words), near.write(words), far.write(words))
-                });
+                cases.add(*name, |words| (l.write(words), near.write(words), far.write(words)));
             }
         }
         "dpsm_distance" => {
-            for (name, depth) in [
-                ("near", 0.0_f32),
-                ("far", 1.0),
-                ("between", 0.3),
-                ("beyond", 1.5),
-            ] {
+            for (name, depth) in
+                [("near", 0.0_f32), ("far", 1.0), ("between", 0.3), ("beyond", 1.5)]
+            {
                 cases.add(name, |words| {
-                    (
-                        depth.write(words),
-                        0.1_f32.write(words),
-                        10.0_f32.write(words),
-                    );
+                    (depth.write(words), 0.1_f32.write(words), 10.0_f32.write(words));
                 });
             }
         }
         "dpsm_caster_border" => {
-            for (name, guard) in [
-                ("no guard", 0.0_f32),
-                ("narrow", 1.0 / 64.0),
-                ("widest", 1.0),
-            ] {
+            for (name, guard) in [("no guard", 0.0_f32), ("narrow", 1.0 / 64.0), ("widest", 1.0)] {
                 cases.add(name, |words| guard.write(words));
             }
         }
         "dpsm_caster_keep" => {
             let below = 0.5_f32.next_down();
-            for (name, value) in [
-                ("border", 0.5),
-                ("just outside", below),
-                ("far behind", -3.0),
-            ] {
+            for (name, value) in [("border", 0.5), ("just outside", below), ("far behind", -3.0)] {
                 cases.add(name, |words| value.write(words));
             }
         }
         "dpsm_caster_vertex" | "dpsm_caster_fragment" => {
             for (name, p) in POINTS {
                 cases.add(*name, |words| {
-                    (
-                        point(p).write(words),
-                        layers.write(words),
-                        0.01_f32.write(words),
-                    );
+                    (point(p).write(words), layers.write(words), 0.01_f32.write(words));
                 });
             }
         }
@@ -217,19 +186,13 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_lambert" => {
             for (name, to_light) in DIRECTIONS {
-                cases.add(*name, |words| {
-                    (unit.write(words), point(to_light).write(words))
-                });
+                cases.add(*name, |words| (unit.write(words), point(to_light).write(words)));
             }
         }
         "dpsm_highlight" => {
             for (name, to_light) in DIRECTIONS {
                 cases.add(*name, |words| {
-                    (
-                        unit.write(words),
-                        point(to_light).write(words),
-                        unit.write(words),
-                    );
+                    (unit.write(words), point(to_light).write(words), unit.write(words));
                 });
             }
         }
@@ -258,10 +221,7 @@ impl Cases {
     fn add<R>(&mut self, name: impl Into<String>, write: impl FnOnce(&mut Vec<Word<f32>>) -> R) {
         let mut words = Vec::new();
         write(&mut words);
-        self.0.push(Case {
-            name: name.into(),
-            words,
-        });
+        self.0.push(Case { name: name.into(), words });
     }
 }
 

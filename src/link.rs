@@ -102,17 +102,10 @@ pub fn link_function(name: &str) -> Result<Linked, LinkError> {
     let catalogue = Catalogue::dpsm()?;
     let functions = |file: &File| {
         let items = file.items.iter().filter(|item| item.kind == "fn");
-        items
-            .filter_map(|item| item.name.clone())
-            .collect::<Vec<_>>()
+        items.filter_map(|item| item.name.clone()).collect::<Vec<_>>()
     };
     let holds = |file: &&File| functions(file).iter().any(|function| function == name);
-    let Some(module) = catalogue
-        .files
-        .iter()
-        .find(holds)
-        .and_then(|f| f.module.as_deref())
-    else {
+    let Some(module) = catalogue.files.iter().find(holds).and_then(|f| f.module.as_deref()) else {
         let all: Vec<_> = catalogue.files.iter().flat_map(functions).collect();
         return Err(LinkError::UnknownFunction {
             name: name.to_owned(),
@@ -168,10 +161,7 @@ impl Catalogue {
     }
 
     fn add(mut self, name: &str, path: &str, text: &str, rules: Rules) -> Result<Self, LinkError> {
-        let place = Place {
-            file: path.to_owned(),
-            line: 1,
-        };
+        let place = Place { file: path.to_owned(), line: 1 };
         if !parse::is_module_name(name) {
             let what = format!("`{name}` cannot be the name of a module");
             return Err(LinkError::Malformed { place, what });
@@ -201,10 +191,7 @@ impl Catalogue {
         let mut whole = BTreeSet::new();
         let mut roots = BTreeSet::new();
         for request in names {
-            let place = || Place {
-                file: (*request).to_owned(),
-                line: 0,
-            };
+            let place = || Place { file: (*request).to_owned(), line: 0 };
             match parse::strip_root(request).split_once("::") {
                 None => {
                     whole.insert(program.module(parse::strip_root(request), place)?);

@@ -54,10 +54,7 @@ impl Shape {
     /// The words of the value named `path`, in order.
     pub fn components(&self, path: &str) -> Vec<Component> {
         match self {
-            Shape::Scalar(kind) => vec![Component {
-                path: path.into(),
-                kind: *kind,
-            }],
+            Shape::Scalar(kind) => vec![Component { path: path.into(), kind: *kind }],
             Shape::Composite(_, parts) => parts
                 .iter()
                 .flat_map(|(accessor, shape)| shape.components(&format!("{path}{accessor}")))
@@ -102,25 +99,15 @@ impl Signature {
             .collect::<Result<Vec<_>, String>>()?;
         let result = found.result.as_ref().ok_or("a function without a result")?;
         let result = shape(module, result.ty)?;
-        if arguments
-            .iter()
-            .all(|(name, shape)| shape.components(name).is_empty())
-        {
+        if arguments.iter().all(|(name, shape)| shape.components(name).is_empty()) {
             return Err("a function without arguments to vary".into());
         }
-        Ok(Self {
-            name: function.into(),
-            arguments,
-            result,
-        })
+        Ok(Self { name: function.into(), arguments, result })
     }
 
     /// The words of one input record.
     pub fn inputs(&self) -> Vec<Component> {
-        self.arguments
-            .iter()
-            .flat_map(|(name, shape)| shape.components(name))
-            .collect()
+        self.arguments.iter().flat_map(|(name, shape)| shape.components(name)).collect()
     }
 
     /// The words of one output record.
@@ -139,38 +126,23 @@ const AXES: [&str; 4] = [".x", ".y", ".z", ".w"];
 
 fn shape(module: &Module, ty: naga::Handle<naga::Type>) -> Result<Shape, String> {
     let found = &module.types[ty];
-    let name = || {
-        found
-            .name
-            .clone()
-            .unwrap_or_else(|| format!("{:?}", found.inner))
-    };
+    let name = || found.name.clone().unwrap_or_else(|| format!("{:?}", found.inner));
     let vector = |size: naga::VectorSize, kind: Kind| {
         let size = size as usize;
-        let parts = AXES[..size]
-            .iter()
-            .map(|axis| (axis.to_string(), Shape::Scalar(kind)));
+        let parts = AXES[..size].iter().map(|axis| (axis.to_string(), Shape::Scalar(kind)));
         Shape::Composite(format!("vec{size}<{}>", kind.wgsl()), parts.collect())
     };
     Ok(match found.inner {
         TypeInner::Scalar(scalar) => Shape::Scalar(kind(scalar)?),
         TypeInner::Vector { size, scalar } => vector(size, kind(scalar)?),
-        TypeInner::Matrix {
-            columns,
-            rows,
-            scalar,
-        } => {
+        TypeInner::Matrix { columns, rows, scalar } => {
             let kind = kind(scalar)?;
             let columns = columns as usize;
             let parts = (0..columns).map(|c| (format!("[{c}]"), vector(rows, kind)));
             let constructor = format!("mat{columns}x{}<{}>", rows as usize, kind.wgsl());
             Shape::Composite(constructor, parts.collect())
         }
-        TypeInner::Array {
-            base,
-            size: naga::ArraySize::Constant(count),
-            ..
-        } => {
+        TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
             let element = shape(module, base)?;
             let parts = (0..count.get()).map(|i| (format!("[{i}]"), element.clone()));
             Shape::Composite("array".into(), parts.collect())
@@ -180,24 +152,16 @@ fn shape(module: &Module, ty: naga::Handle<naga::Type>) -> Result<Shape, String>
                 let accessor = format!(".{}", member.name.as_deref().unwrap_or_default());
                 Ok((accessor, shape(module, member.ty)?))
             };
-            let parts = members
-                .iter()
-                .map(part)
-                .collect::<Result<Vec<_>, String>>()?;
+            let parts = members.iter().map(part).collect::<Result<Vec<_>, String>>()?;
             Shape::Composite(name(), parts)
         }
-        TypeInner::Image {
-            dim: naga::ImageDimension::D2,
-            arrayed: true,
-            class,
-        } => match class {
+        TypeInner::Image { dim: naga::ImageDimension::D2, arrayed: true, class } => match class {
             naga::ImageClass::Depth { multi: false } => {
                 Shape::Texture("texture_depth_2d_array".into())
             }
-            naga::ImageClass::Sampled {
-                kind: ScalarKind::Float,
-                multi: false,
-            } => Shape::Texture("texture_2d_array<f32>".into()),
+            naga::ImageClass::Sampled { kind: ScalarKind::Float, multi: false } => {
+                Shape::Texture("texture_2d_array<f32>".into())
+            }
             _ => return Err(format!("the texture type {}", name())),
         },
         TypeInner::Sampler { comparison: true } => Shape::Sampler("sampler_comparison".into()),

@@ -272,9 +272,7 @@ impl Frame {
         for vertex in &vertices {
             check("the scene's vertex", vertex.position)?;
         }
-        let bias = settings
-            .bias
-            .unwrap_or_else(|| constant_bias(settings.size, settings.format));
+        let bias = settings.bias.unwrap_or_else(|| constant_bias(settings.size, settings.format));
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
         }
@@ -298,23 +296,11 @@ impl Frame {
             rectangle: scalar::Vec4::new(0.0, 0.0, 1.0, 1.0),
             first_layer: 0,
             placement: DPSM_LAYERS,
-            hemispheres: if hemispherical {
-                DPSM_HEMISPHERICAL
-            } else {
-                DPSM_OMNIDIRECTIONAL
-            },
+            hemispheres: if hemispherical { DPSM_HEMISPHERICAL } else { DPSM_OMNIDIRECTIONAL },
             padding: 0,
         };
         let view = View::new(camera, settings.image)?;
-        Ok(Self {
-            vertices,
-            triangles,
-            light,
-            color: Vec3::ONE,
-            bias,
-            view,
-            settings,
-        })
+        Ok(Self { vertices, triangles, light, color: Vec3::ONE, bias, view, settings })
     }
 }
 
@@ -335,9 +321,7 @@ impl View {
             return Err(FrameError::Camera(camera.eye));
         };
         let right = forward.cross(camera.up.as_dvec3());
-        let right = right
-            .try_normalize()
-            .unwrap_or_else(|| forward.any_orthonormal_vector());
+        let right = right.try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let up = right.cross(forward);
         let cotangent = 1.0 / (f64::from(camera.vertical_fov) / 2.0).tan();
         Ok(Self {
@@ -346,10 +330,7 @@ impl View {
             up: up.as_vec3(),
             forward: forward.as_vec3(),
             near: (towards.length() * CAMERA_NEAR_SHARE) as f32,
-            scale: [
-                (cotangent * f64::from(height) / f64::from(width)) as f32,
-                cotangent as f32,
-            ],
+            scale: [(cotangent * f64::from(height) / f64::from(width)) as f32, cotangent as f32],
         })
     }
 }
@@ -364,11 +345,7 @@ impl Picture {
 /// The light space whose +z is `axis`: right, up, forward with right x up = forward.
 pub fn basis(axis: DVec3) -> [DVec3; 3] {
     let forward = axis.try_normalize().unwrap_or(DVec3::NEG_Y);
-    let helper = if forward.x.abs() < 0.9 {
-        DVec3::X
-    } else {
-        DVec3::Z
-    };
+    let helper = if forward.x.abs() < 0.9 { DVec3::X } else { DVec3::Z };
     let right = (helper - forward * forward.dot(helper)).normalize();
     [right, forward.cross(right), forward]
 }

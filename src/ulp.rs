@@ -5,11 +5,7 @@
 pub fn ulps_apart(a: f32, b: f32) -> u32 {
     let place = |x: f32| {
         let magnitude = i64::from(x.to_bits() & 0x7fff_ffff);
-        if x.is_sign_negative() {
-            -magnitude
-        } else {
-            magnitude
-        }
+        if x.is_sign_negative() { -magnitude } else { magnitude }
     };
     match (a.is_nan(), b.is_nan()) {
         (true, true) => 0,

@@ -78,17 +78,13 @@ impl fmt::Display for Report {
         let lines = self.labels.iter().map(|label| label.line);
         let width = lines.max().unwrap_or(0).to_string().len();
         match self.labels.first() {
-            Some(Label {
-                file, line, column, ..
-            }) => write!(f, "{file}:{line}:{column}")?,
+            Some(Label { file, line, column, .. }) => write!(f, "{file}:{line}:{column}")?,
             None => write!(f, "{}", self.name)?,
         }
         write!(f, ": {}", self.message)?;
         for (index, label) in self.labels.iter().enumerate() {
             if index > 0 {
-                let Label {
-                    file, line, column, ..
-                } = label;
+                let Label { file, line, column, .. } = label;
                 write!(f, "\n{:width$}--> {file}:{line}:{column}", "")?;
             }
             // A tab stays one, so that the caret stands where the text does.
@@ -97,12 +93,7 @@ impl fmt::Display for Report {
             let carets = "^".repeat(label.length.max(1));
             writeln!(f, "\n{:width$} |", "")?;
             writeln!(f, "{:width$} | {}", label.line, label.source)?;
-            write!(
-                f,
-                "{:width$} | {}",
-                "",
-                format!("{before}{carets} {}", label.text).trim_end()
-            )?;
+            write!(f, "{:width$} | {}", "", format!("{before}{carets} {}", label.text).trim_end())?;
         }
         for note in &self.notes {
             write!(f, "\n{:width$} = {note}", "")?;
@@ -137,10 +128,7 @@ pub fn validate(linked: &Linked) -> Result<Validated, ValidateError> {
     let file = || linked.name().to_owned();
     if depth(&linked.text) > DEEPEST {
         let limit = DEEPEST;
-        return Err(ValidateError::TooDeep {
-            file: file(),
-            limit,
-        });
+        return Err(ValidateError::TooDeep { file: file(), limit });
     }
     let run = || catch_unwind(|| check(linked));
     let result = thread::scope(|scope| {
@@ -153,10 +141,7 @@ pub fn validate(linked: &Linked) -> Result<Validated, ValidateError> {
     });
     result.unwrap_or_else(|panic| {
         let message = panic_message(panic.as_ref());
-        Err(ValidateError::Panic {
-            file: file(),
-            message,
-        })
+        Err(ValidateError::Panic { file: file(), message })
     })
 }
 
@@ -191,9 +176,7 @@ fn check(linked: &Linked) -> Result<Validated, ValidateError> {
 }
 
 fn labels(linked: &Linked, spans: impl Iterator<Item = (Span, String)>) -> Vec<Label> {
-    spans
-        .filter_map(|(span, text)| label(linked, span, &text))
-        .collect()
+    spans.filter_map(|(span, text)| label(linked, span, &text)).collect()
 }
 
 /// A span of the linked text as a place in the file that it came from; columns are the same.
@@ -202,19 +185,11 @@ fn label(linked: &Linked, span: Span, text: &str) -> Option<Label> {
     let (before, after) = linked.text.split_at_checked(range.start)?;
     let line = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
-    let inside = linked
-        .text
-        .get(range)
-        .unwrap_or("")
-        .lines()
-        .next()
-        .unwrap_or("");
+    let inside = linked.text.get(range).unwrap_or("").lines().next().unwrap_or("");
     let whole = linked.text[start..].lines().next().unwrap_or(after);
     let origin = linked.origin(line);
     Some(Label {
-        file: origin
-            .map_or(linked.name(), |origin| origin.file)
-            .to_owned(),
+        file: origin.map_or(linked.name(), |origin| origin.file).to_owned(),
         line: origin.map_or(line, |origin| origin.line),
         column: linked.text[start..before.len()].chars().count() + 1,
         length: inside.chars().count(),

@@ -63,10 +63,7 @@ fn a_farther_point_never_stores_a_smaller_depth() {
     let mut rng = rng("monotone");
     for _ in 0..CASES {
         let (l, near, far) = spheres(&mut rng);
-        assert!(
-            dpsm_depth(l.next_up(), near, far) >= dpsm_depth(l, near, far),
-            "{l} {near} {far}"
-        );
+        assert!(dpsm_depth(l.next_up(), near, far) >= dpsm_depth(l, near, far), "{l} {near} {far}");
     }
 }
 
@@ -81,8 +78,5 @@ fn both_spheres_are_within() {
 fn receivers_outside_the_spheres_compare_at_the_spheres() {
     assert_eq!(dpsm_receiver_depth(0.05_f32, 0.1, 10.0), 0.0);
     assert_eq!(dpsm_receiver_depth(11.0_f32, 0.1, 10.0), 1.0);
-    assert_eq!(
-        dpsm_receiver_depth(5.0_f32, 0.1, 10.0),
-        dpsm_depth(5.0, 0.1, 10.0)
-    );
+    assert_eq!(dpsm_receiver_depth(5.0_f32, 0.1, 10.0), dpsm_depth(5.0, 0.1, 10.0));
 }

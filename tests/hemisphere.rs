@@ -11,10 +11,7 @@ use dpsm::scalar::paraboloid::dpsm_project;
 fn seam_itself_is_in_front_with_either_sign_of_zero() {
     assert_eq!(dpsm_hemisphere(Vec3::new(1.0_f32, 0.0, 0.0)), DPSM_FRONT);
     assert_eq!(dpsm_hemisphere(Vec3::new(1.0_f32, 0.0, -0.0)), DPSM_FRONT);
-    assert_eq!(
-        dpsm_hemisphere(Vec3::new(1.0_f32, 0.0, -f32::MIN_POSITIVE)),
-        DPSM_BACK
-    );
+    assert_eq!(dpsm_hemisphere(Vec3::new(1.0_f32, 0.0, -f32::MIN_POSITIVE)), DPSM_BACK);
 }
 
 #[test]
@@ -76,10 +73,7 @@ fn light_space_stays_within_its_bound_far_from_the_origin() {
         let light = common::light(&mut rng);
         let world = light.position + point(&mut rng, -10, 10);
         let wide = widen_light(light);
-        let (p, exact) = (
-            dpsm_to_light(world, light).widen(),
-            dpsm_to_light(world.widen(), wide),
-        );
+        let (p, exact) = (dpsm_to_light(world, light).widen(), dpsm_to_light(world.widen(), wide));
         let bound = 4.0 * EPS * (world.widen() - wide.position).length();
         for (value, exact) in [(p.x, exact.x), (p.y, exact.y), (p.z, exact.z)] {
             worst.note((value - exact).abs(), bound, world);
@@ -94,13 +88,7 @@ fn forward_goes_to_the_front_pole_and_right_to_the_right() {
     let p = dpsm_to_light(light.position + light.forward * 2.0, light);
     // 4 eps times the distance, and as much for the struct's own rounded rotation
     let close = |a: f32, b: f32| f64::from((a - b).abs()) <= 8.0 * 100.0 * EPS;
-    assert!(
-        close(p.x, 0.0) && close(p.y, 0.0) && close(p.z, 2.0),
-        "{p:?}"
-    );
+    assert!(close(p.x, 0.0) && close(p.y, 0.0) && close(p.z, 2.0), "{p:?}");
     let p = dpsm_to_light(light.position + light.right, light);
-    assert!(
-        close(p.x, 1.0) && close(p.y, 0.0) && close(p.z, 0.0),
-        "{p:?}"
-    );
+    assert!(close(p.x, 1.0) && close(p.y, 0.0) && close(p.z, 0.0), "{p:?}");
 }

@@ -57,12 +57,7 @@ fn layout_is_the_same_in_rust_and_in_the_shader() {
     use std::mem::offset_of;
     let linked = dpsm::link(&["light"]).unwrap();
     let module = dpsm::validate(&linked).unwrap().module;
-    let ty = module
-        .types
-        .iter()
-        .find(|(_, ty)| ty.name.as_deref() == Some("DpsmLight"))
-        .unwrap()
-        .1;
+    let ty = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some("DpsmLight")).unwrap().1;
     let naga::TypeInner::Struct { members, span } = &ty.inner else {
         panic!("DpsmLight is {:?}", ty.inner)
     };
@@ -70,11 +65,7 @@ fn layout_is_the_same_in_rust_and_in_the_shader() {
         .iter()
         .map(|member| {
             let size = module.types[member.ty].inner.size(module.to_ctx());
-            (
-                member.name.clone().unwrap(),
-                member.offset as usize,
-                size as usize,
-            )
+            (member.name.clone().unwrap(), member.offset as usize, size as usize)
         })
         .collect();
     macro_rules! rust {

@@ -63,11 +63,9 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
 }";
 
 fn catalogue(modules: &[(&str, &str)]) -> Result<Catalogue, LinkError> {
-    modules
-        .iter()
-        .try_fold(Catalogue::new(), |catalogue, (name, text)| {
-            catalogue.with(name, &format!("{name}.wesl"), text)
-        })
+    modules.iter().try_fold(Catalogue::new(), |catalogue, (name, text)| {
+        catalogue.with(name, &format!("{name}.wesl"), text)
+    })
 }
 
 fn toys() -> Catalogue {
@@ -191,21 +189,14 @@ fn users_shader_stays_whole_below_its_imports() {
 #[test]
 fn shader_without_imports_is_unchanged() {
     let text = "// A comment.\n\nconst A = 1u;\n";
-    assert_eq!(
-        Catalogue::new().link_source("my.wesl", text).unwrap().text,
-        text
-    );
+    assert_eq!(Catalogue::new().link_source("my.wesl", text).unwrap().text, text);
 }
 
 #[test]
 fn one_item_brings_only_what_it_names() {
     let linked = toys().link(&["base::increment"]).unwrap();
     assert!(linked.text.contains("fn increment"));
-    assert!(
-        linked
-            .text
-            .contains("/// One.\nconst ONE: f32 = 1.0; // exactly\n")
-    );
+    assert!(linked.text.contains("/// One.\nconst ONE: f32 = 1.0; // exactly\n"));
     for absent in ["TWO", "unused", "const_assert", "The base", "middle"] {
         assert!(!linked.text.contains(absent), "{absent}");
     }
@@ -219,16 +210,8 @@ fn assertion_is_kept_with_everything_it_names() {
 
 #[test]
 fn declarations_needed_twice_come_once() {
-    let linked = toys()
-        .link(&["middle", "base", "base::increment", "middle::twice"])
-        .unwrap();
-    for once in [
-        "fn increment",
-        "fn twice",
-        "struct Pair",
-        "const ONE",
-        "// dpsm::base\n",
-    ] {
+    let linked = toys().link(&["middle", "base", "base::increment", "middle::twice"]).unwrap();
+    for once in ["fn increment", "fn twice", "struct Pair", "const ONE", "// dpsm::base\n"] {
         assert_eq!(linked.text.matches(once).count(), 1, "{once}");
     }
 }
@@ -250,11 +233,7 @@ fn directives_are_hoisted_and_given_once() {
 
 #[test]
 fn every_line_maps_to_its_origin() {
-    let files = [
-        ("middle.wesl", MIDDLE),
-        ("base.wesl", BASE),
-        ("my.wesl", USER),
-    ];
+    let files = [("middle.wesl", MIDDLE), ("base.wesl", BASE), ("my.wesl", USER)];
     let linked = toys().link(&["middle", "base"]).unwrap();
     assert!(check_lines(&linked, &files) > 25);
     let linked = toys().link_source("my.wesl", USER).unwrap();
@@ -269,39 +248,25 @@ fn windows_line_ends_and_byte_order_mark_change_nothing() {
     let (middle, base) = (windows(MIDDLE), windows(BASE));
     let other = catalogue(&[("middle", &middle), ("base", &base)]).unwrap();
     let linked = other.link_source("my.wesl", &windows(USER)).unwrap();
-    assert_eq!(
-        linked.text,
-        toys().link_source("my.wesl", USER).unwrap().text
-    );
+    assert_eq!(linked.text, toys().link_source("my.wesl", USER).unwrap().text);
 }
 
 #[test]
 fn declarations_on_one_line_keep_their_columns() {
     let all = catalogue(&[("a", "const A = 1; const B = A; const C = 3;")]).unwrap();
     let linked = all.link(&["a::B"]).unwrap();
-    assert!(
-        linked
-            .text
-            .ends_with("const A = 1;\n             const B = A;\n"),
-        "{}",
-        linked.text
-    );
+    assert!(linked.text.ends_with("const A = 1;\n             const B = A;\n"), "{}", linked.text);
 }
 
 #[test]
 fn modules_are_described_by_header_imports_and_items() {
     let modules = toys().describe();
     let middle = &modules[0];
-    assert_eq!(
-        (middle.name.as_str(), middle.path.as_str()),
-        ("middle", "middle.wesl")
-    );
+    assert_eq!((middle.name.as_str(), middle.path.as_str()), ("middle", "middle.wesl"));
     assert_eq!(middle.summary, "The middle.");
     assert_eq!(middle.imports, ["base"]);
     let items = modules[1].items.iter();
-    let items: Vec<_> = items
-        .map(|i| (i.kind, i.name.as_str(), i.doc.as_str(), i.line))
-        .collect();
+    let items: Vec<_> = items.map(|i| (i.kind, i.name.as_str(), i.doc.as_str(), i.line)).collect();
     assert_eq!(
         items,
         [
@@ -338,10 +303,7 @@ fn unknown_modules_name_the_nearest_one() {
         toys().link(&["midle"]).unwrap_err().to_string(),
         "midle: unknown module `midle`; did you mean `middle`?"
     );
-    assert_eq!(
-        toys().link(&[""]).unwrap_err().to_string(),
-        ": unknown module ``"
-    );
+    assert_eq!(toys().link(&[""]).unwrap_err().to_string(), ": unknown module ``");
 }
 
 #[test]
@@ -377,32 +339,16 @@ fn import_cycle_names_its_chain() {
     ])
     .unwrap();
     let error = all.link(&["start"]).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "c.wesl:3: import cycle: a -> b -> c -> a"
-    );
-    let LinkError::Cycle { place, chain } = error else {
-        panic!("{error}")
-    };
-    assert_eq!(
-        place,
-        Place {
-            file: "c.wesl".to_owned(),
-            line: 3
-        }
-    );
+    assert_eq!(error.to_string(), "c.wesl:3: import cycle: a -> b -> c -> a");
+    let LinkError::Cycle { place, chain } = error else { panic!("{error}") };
+    assert_eq!(place, Place { file: "c.wesl".to_owned(), line: 3 });
     assert_eq!(chain, ["a", "b", "c", "a"]);
-    assert_eq!(
-        all.link(&["own"]).unwrap_err().to_string(),
-        "own.wesl:1: import cycle: own -> own"
-    );
+    assert_eq!(all.link(&["own"]).unwrap_err().to_string(), "own.wesl:1: import cycle: own -> own");
 }
 
 #[test]
 fn long_chains_of_modules_link() {
-    let mut all = Catalogue::new()
-        .with("end", "end.wesl", "fn end() {}")
-        .unwrap();
+    let mut all = Catalogue::new().with("end", "end.wesl", "fn end() {}").unwrap();
     let mut before = "end".to_owned();
     for index in 0..2000 {
         let name: String = format!("m{index}x");
@@ -443,15 +389,9 @@ fn name_clashes_name_both_places() {
 
 #[test]
 fn names_that_would_bind_without_an_import_are_reported() {
-    let all = [(
-        "a",
-        "fn helper() {}\nfn one() { helper(); let x = clamp(1.0, 0.0, 1.0); }",
-    )];
+    let all = [("a", "fn helper() {}\nfn one() { helper(); let x = clamp(1.0, 0.0, 1.0); }")];
     assert_eq!(
-        user_error(
-            &all,
-            "import dpsm::a::one;\nfn f() {\n  one();\n  helper();\n}"
-        ),
+        user_error(&all, "import dpsm::a::one;\nfn f() {\n  one();\n  helper();\n}"),
         "my.wesl:4: `helper` is not imported here but would bind to the declaration at \
          a.wesl:1; add `import dpsm::a::{helper};` or rename it"
     );
@@ -462,10 +402,7 @@ fn names_that_would_bind_without_an_import_are_reported() {
     );
     let shadowed =
         "import dpsm::a::one;\nstruct S { one: i32 }\nfn f(helper: S) { _ = helper.one; }";
-    let linked = catalogue(&all)
-        .unwrap()
-        .link_source("my.wesl", shadowed)
-        .unwrap();
+    let linked = catalogue(&all).unwrap().link_source("my.wesl", shadowed).unwrap();
     validate(&linked).unwrap();
 }
 
@@ -488,12 +425,7 @@ fn names_that_translation_changes_are_refused_in_modules() {
         ("fn foo2() {}", "foo2", "foo", 1),
         ("fn f(\n  p1: f32) {}", "p1", "p", 2),
         ("fn f() {\n  let a_2 = 1;\n}", "a_2", "a", 2),
-        (
-            "fn f() {\n  for (var i0 = 0; i0 < 3; i0++) {}\n}",
-            "i0",
-            "i",
-            2,
-        ),
+        ("fn f() {\n  for (var i0 = 0; i0 < 3; i0++) {}\n}", "i0", "i", 2),
         ("fn f() {\n  var<function> v9: f32;\n}", "v9", "v", 2),
         ("fn f() {\n  const c1 = 1;\n}", "c1", "c", 2),
         ("struct S {\n  @size(16) m3: f32\n}", "m3", "m", 2),
@@ -533,10 +465,7 @@ fn dpsm_modules_need_the_prefix() {
             "fn dpsm_foo2() {}",
             "`dpsm_foo2` ends in a digit, so naga's back-ends rename it; use `dpsm_foo`",
         ),
-        (
-            "fn foo2() {}",
-            "`foo2` ends in a digit, so naga's back-ends rename it; use `dpsm_foo`",
-        ),
+        ("fn foo2() {}", "`foo2` ends in a digit, so naga's back-ends rename it; use `dpsm_foo`"),
         (
             "struct light_params { x: f32 }",
             "`light_params` lacks the prefix `Dpsm` of types; use `DpsmLightParams`",
@@ -554,23 +483,12 @@ fn dpsm_modules_need_the_prefix() {
             "`DPSM_x` lacks the prefix `dpsm_` of functions and variables; use `dpsm_x`",
         ),
     ] {
-        let module = Module {
-            name: "m",
-            path: "wgsl/m.wesl",
-            text,
-        };
+        let module = Module { name: "m", path: "wgsl/m.wesl", text };
         let error = Catalogue::of(&[module]).unwrap_err().to_string();
         assert_eq!(error, format!("wgsl/m.wesl:1: {rest}"));
     }
     let text = "struct DpsmS { x: f32 }\nfn dpsm_f(x: DpsmS) {}\nconst DPSM_N = 1;";
-    assert!(
-        Catalogue::of(&[Module {
-            name: "m",
-            path: "",
-            text
-        }])
-        .is_ok()
-    );
+    assert!(Catalogue::of(&[Module { name: "m", path: "", text }]).is_ok());
 }
 
 #[test]
@@ -638,11 +556,7 @@ fn other_forms_of_import_say_what_to_write() {
             "paths within a declaration are not supported; write `import dpsm::a::{name};`",
         ),
     ] {
-        assert_eq!(
-            user_error(&[], import),
-            format!("my.wesl:1: {what}"),
-            "{import}"
-        );
+        assert_eq!(user_error(&[], import), format!("my.wesl:1: {what}"), "{import}");
     }
     assert_eq!(
         module_error("import super::b::*;"),
@@ -662,22 +576,10 @@ fn malformed_text_names_its_line() {
         ("const A = 1\n@compute fn f() {}", 1, "missing `;`"),
         ("import super::b::{c}\nfn f() {}", 1, "missing `;`"),
         ("import", 1, "missing `;`"),
-        (
-            "const A = 1;\nimport super::b::{c};",
-            2,
-            "`import` must come before all declarations",
-        ),
-        (
-            "const A = 1;\nenable f16;",
-            2,
-            "`enable` must come before all declarations",
-        ),
+        ("const A = 1;\nimport super::b::{c};", 2, "`import` must come before all declarations"),
+        ("const A = 1;\nenable f16;", 2, "`enable` must come before all declarations"),
         ("hello", 1, "expected a declaration, found `hello`"),
-        (
-            "@compute",
-            1,
-            "a declaration is missing after its attributes",
-        ),
+        ("@compute", 1, "a declaration is missing after its attributes"),
         ("@", 1, "a declaration is missing after its attributes"),
         ("fn", 1, "expected a name after `fn`"),
         ("var<private", 1, "expected a name after `var`"),
@@ -687,17 +589,10 @@ fn malformed_text_names_its_line() {
         ("fn f() -> f32;", 1, "the function has no body"),
         ("struct S;", 1, "expected `{` after `struct S`"),
     ] {
-        assert_eq!(
-            module_error(text),
-            format!("a.wesl:{line}: {what}"),
-            "{text}"
-        );
+        assert_eq!(module_error(text), format!("a.wesl:{line}: {what}"), "{text}");
     }
     assert_eq!(
-        Catalogue::new()
-            .with("a::b", "x.wesl", "")
-            .unwrap_err()
-            .to_string(),
+        Catalogue::new().with("a::b", "x.wesl", "").unwrap_err().to_string(),
         "x.wesl:1: `a::b` cannot be the name of a module"
     );
 }
@@ -763,22 +658,11 @@ fn odd_text_is_an_answer_and_never_a_panic() {
     texts.push("{".repeat(deep));
     texts.push("/*".repeat(deep));
     texts.push(format!("fn f() {}{}", "{".repeat(deep), "}".repeat(deep)));
-    texts.push(format!(
-        "const a = {}1{};",
-        "(".repeat(deep),
-        ")".repeat(deep)
-    ));
+    texts.push(format!("const a = {}1{};", "(".repeat(deep), ")".repeat(deep)));
     texts.push(format!("const a = {}1;", "1 + ".repeat(deep)));
     texts.push(format!("const a = {}1;", "-".repeat(deep)));
-    texts.push(format!(
-        "alias a = {}f32{};",
-        "array<".repeat(deep),
-        ">".repeat(deep)
-    ));
-    texts.push(format!(
-        "fn f(x: bool) {{ {} {{}} }}",
-        "if x {} else".repeat(deep)
-    ));
+    texts.push(format!("alias a = {}f32{};", "array<".repeat(deep), ">".repeat(deep)));
+    texts.push(format!("fn f(x: bool) {{ {} {{}} }}", "if x {} else".repeat(deep)));
     texts.push("a".repeat(deep));
     let forward = |i: usize| format!("const c{i}c = c{}c;", i + 1);
     texts.push((0..2_000).map(forward).collect::<String>() + "const c2000c = 1;");
@@ -816,9 +700,7 @@ fn unknown_name_is_shown_in_the_users_line() {
         6 |     let größe = 1.0; let y = foo(x);\n\
         \x20 |                              ^^^ unknown identifier"
     );
-    let ValidateError::Parse(report) = error else {
-        panic!("{error}")
-    };
+    let ValidateError::Parse(report) = error else { panic!("{error}") };
     assert_eq!((report.labels[0].line, report.labels[0].column), (6, 30));
 }
 
@@ -854,10 +736,7 @@ fn error_in_a_module_is_shown_in_the_module() {
 fn failure_of_naga_itself_names_the_file() {
     let (file, message) = ("my.wesl".to_owned(), "index out of bounds".to_owned());
     let error = ValidateError::Panic { file, message };
-    assert_eq!(
-        error.to_string(),
-        "naga failed on my.wesl: index out of bounds"
-    );
+    assert_eq!(error.to_string(), "naga failed on my.wesl: index out of bounds");
 }
 
 #[test]

@@ -114,10 +114,7 @@ fn texel_pitch_is_the_angle_across_a_texel_in_both_directions() {
             let across = angle(dpsm_unproject(uv - step), dpsm_unproject(uv + step));
             // first-order formula, docs/paraboloid.md
             let bound = pitch * pitch * pitch / 3.0;
-            assert!(
-                (across - pitch).abs() <= bound,
-                "{uv:?} at {size}: {across} and {pitch}"
-            );
+            assert!((across - pitch).abs() <= bound, "{uv:?} at {size}: {across} and {pitch}");
         }
     }
 }
@@ -181,16 +178,12 @@ fn texture_coordinates_and_back_stay_within_their_bounds() {
     for _ in 0..CASES {
         let guard = rng.f32();
         let p = Vec2::new(rng.f32() * 2.0 - 1.0, rng.f32() * 2.0 - 1.0) * (1.0 + guard);
-        let (st, exact) = (
-            dpsm_disk_to_texture(p, guard),
-            dpsm_disk_to_texture(p.widen(), guard.into()),
-        );
+        let (st, exact) =
+            (dpsm_disk_to_texture(p, guard), dpsm_disk_to_texture(p.widen(), guard.into()));
         forth.note((f64::from(st.x) - exact.x).abs(), 3.0 * EPS, p);
         forth.note((f64::from(st.y) - exact.y).abs(), 3.0 * EPS, p);
-        let (uv, exact) = (
-            dpsm_texture_to_disk(st, guard),
-            dpsm_texture_to_disk(st.widen(), guard.into()),
-        );
+        let (uv, exact) =
+            (dpsm_texture_to_disk(st, guard), dpsm_texture_to_disk(st.widen(), guard.into()));
         let bound = 6.0 * EPS * f64::from(1.0 + guard);
         back.note((f64::from(uv.x) - exact.x).abs(), bound, st);
         // a round trip adds what the first step's error becomes on the way back, times 2 (1 + g)

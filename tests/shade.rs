@@ -52,17 +52,9 @@ fn lighting_stays_within_its_bounds() {
         blend.note((f64::from(value.y) - exact.y).abs(), bound, (a, d));
         let [n, l, e] = [(); 3].map(|()| unit(&mut rng));
         let exact = dpsm_lambert(n.widen(), l.widen());
-        lambert.note(
-            (f64::from(dpsm_lambert(n, l)) - exact).abs(),
-            3.0 * EPS,
-            (n, l),
-        );
+        lambert.note((f64::from(dpsm_lambert(n, l)) - exact).abs(), 3.0 * EPS, (n, l));
         let exact = dpsm_highlight(n.widen(), l.widen(), e.widen());
-        highlight.note(
-            (f64::from(dpsm_highlight(n, l, e)) - exact).abs(),
-            470.0 * EPS,
-            (n, l, e),
-        );
+        highlight.note((f64::from(dpsm_highlight(n, l, e)) - exact).abs(), 470.0 * EPS, (n, l, e));
     }
     shade.check("dpsm_shade");
     blend.check("dpsm_blend");

@@ -76,28 +76,18 @@ fn points_behind_the_cap_are_in_shadow_and_no_others() {
             continue;
         }
         let truth = off > CAP || f64::from(l) < CAP_DISTANCE;
-        assert_eq!(
-            dpsm_visibility(&maps, p, light, 0.0),
-            f32::from(u8::from(truth)),
-            "{p:?}"
-        );
+        assert_eq!(dpsm_visibility(&maps, p, light, 0.0), f32::from(u8::from(truth)), "{p:?}");
         match truth {
             true => lit += 1,
             false => shadowed += 1,
         }
     }
-    assert!(
-        shadowed > CASES / 50 && lit > CASES / 50,
-        "{shadowed} in shadow, {lit} lit"
-    );
+    assert!(shadowed > CASES / 50 && lit > CASES / 50, "{shadowed} in shadow, {lit} lit");
 }
 
 #[test]
 fn back_of_a_hemispherical_light_is_always_in_shadow() {
-    let light = DpsmLight {
-        hemispheres: DPSM_HEMISPHERICAL,
-        ..plain_light(0.0)
-    };
+    let light = DpsmLight { hemispheres: DPSM_HEMISPHERICAL, ..plain_light(0.0) };
     let maps = DepthMaps::empty(SIZE, 1, Sampling::Nearest);
     let mut rng = rng("hemispherical");
     for _ in 0..CASES {
@@ -106,11 +96,7 @@ fn back_of_a_hemispherical_light_is_always_in_shadow() {
         assert_eq!(dpsm_visibility(&maps, p, light, 0.0), expected, "{p:?}");
         let at = dpsm_receiver_vertex(p, light);
         if p.z != 0.0 && at.hemisphere_value != 0.5 {
-            assert_eq!(
-                dpsm_visibility_vertex(&maps, at, light, 0.0),
-                expected,
-                "{p:?}"
-            );
+            assert_eq!(dpsm_visibility_vertex(&maps, at, light, 0.0), expected, "{p:?}");
         }
     }
 }
@@ -158,11 +144,7 @@ fn lookup_stays_within_its_bounds() {
         }
         let (near, far) = (f64::from(light.near), f64::from(light.far));
         let bound = EPS * (10.5 * p.widen().length() + 4.5 * near) / (far - near);
-        depth.note(
-            (f64::from(at.depth) - exact.depth).abs(),
-            bound,
-            (p, near, far),
-        );
+        depth.note((f64::from(at.depth) - exact.depth).abs(), bound, (p, near, far));
         assert_eq!(at.hemisphere, dpsm_hemisphere(p));
         assert_eq!(at.layer, dpsm_light_layer(light, at.hemisphere));
     }
@@ -176,23 +158,12 @@ fn lookup_by_vertex_is_the_lookup_by_pixel_at_the_vertices() {
     let mut rng = rng("by vertex");
     let mut worst = Worst::default();
     for _ in 0..CASES {
-        let light = DpsmLight {
-            placement: DPSM_LAYERS,
-            ..light(&mut rng)
-        };
+        let light = DpsmLight { placement: DPSM_LAYERS, ..light(&mut rng) };
         let p = point(&mut rng, -4, 4);
         let (at, by_vertex) = (dpsm_lookup(p, light), dpsm_receiver_vertex(p, light));
-        let own = if at.hemisphere == 0 {
-            by_vertex.front
-        } else {
-            by_vertex.back
-        };
+        let own = if at.hemisphere == 0 { by_vertex.front } else { by_vertex.back };
         // the same formula on the same side: nothing may differ
-        worst.note(
-            (own - at.coordinates).widen().length(),
-            f64::MIN_POSITIVE,
-            p,
-        );
+        worst.note((own - at.coordinates).widen().length(), f64::MIN_POSITIVE, p);
         let exact = dpsm_receiver_vertex(p.widen(), widen_light(light));
         for (value, exact) in [(by_vertex.front, exact.front), (by_vertex.back, exact.back)] {
             let reach = (exact - Vec2::splat(0.5)).length();

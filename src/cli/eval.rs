@@ -48,26 +48,18 @@ pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), Cli
         Some(path) => read_records(path, &inputs)?,
         None => cases::of(function)
             .into_iter()
-            .map(|case| Record {
-                name: case.name,
-                words: case.words,
-            })
+            .map(|case| Record { name: case.name, words: case.words })
             .collect(),
     };
     let device = adapter.open()?;
     eprintln!("dpsm: {}", super::describe(device.as_ref()));
-    let answers = device
-        .map(|device| on_adapter(&device, function, &records))
-        .transpose()?;
+    let answers = device.map(|device| on_adapter(&device, function, &records)).transpose()?;
     let text = table(&signature, &records, answers.as_deref())?;
     write_or_print(arguments.output.as_deref(), &text)
 }
 
 fn signature(function: &str) -> Result<Signature, CliError> {
-    let unsupported = |reason| GpuError::Unsupported {
-        function: function.to_string(),
-        reason,
-    };
+    let unsupported = |reason| GpuError::Unsupported { function: function.to_string(), reason };
     let validated = dpsm::validate(&dpsm::link::link_function(function)?)?;
     let signature = Signature::of(&validated.module, function).map_err(unsupported)?;
     if signature.needs_resources() {
@@ -82,10 +74,7 @@ fn on_adapter(device: &Device, function: &str, records: &[Record]) -> Result<Vec
         Word::Float(value) => value.to_bits(),
         Word::Integer(value) => value,
     };
-    let words: Vec<u32> = records
-        .iter()
-        .flat_map(|record| record.words.iter().map(bits))
-        .collect();
+    let words: Vec<u32> = records.iter().flat_map(|record| record.words.iter().map(bits)).collect();
     Ok(Evaluator::new(device, function)?.run(&words, None)?.words)
 }
 
@@ -121,9 +110,7 @@ fn table(
             let (port, reference) = (port[k], reference[k]);
             let row = match (port, reference) {
                 (Word::Float(port), Word::Float(reference)) => [
-                    adapter
-                        .map(|bits| f32::from_bits(bits).to_string())
-                        .unwrap_or_default(),
+                    adapter.map(|bits| f32::from_bits(bits).to_string()).unwrap_or_default(),
                     port.to_string(),
                     reference.to_string(),
                     adapter
@@ -147,9 +134,7 @@ fn table(
                 .map_err(broken)?;
         }
     }
-    let bytes = writer
-        .into_inner()
-        .map_err(|error| CliError::Usage(error.to_string()))?;
+    let bytes = writer.into_inner().map_err(|error| CliError::Usage(error.to_string()))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
@@ -178,45 +163,21 @@ fn integer<T>(word: Word<T>) -> u32 {
 /// Reads records by the header's names; a last part of a name is enough where it is unique.
 fn read_records(path: &Path, inputs: &[Component]) -> Result<Vec<Record>, CliError> {
     let text = super::output::read_text(path)?;
-    let csv_error = |line: u64, message: String| CliError::Csv {
-        path: path.into(),
-        line,
-        message,
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let csv_error = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let broken = |error: csv::Error| {
         let line = error.position().map_or(1, |position| position.line());
         csv_error(line, error.to_string())
     };
     let header = reader.headers().map_err(broken)?.clone();
-    let wanted = inputs
-        .iter()
-        .map(|c| c.path.as_str())
-        .collect::<Vec<_>>()
-        .join(",");
+    let wanted = inputs.iter().map(|c| c.path.as_str()).collect::<Vec<_>>().join(",");
     let column = |component: &Component| {
         let full = header.iter().position(|name| name == component.path);
         let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_string();
-        let unique = inputs
-            .iter()
-            .filter(|c| last(&c.path) == last(&component.path))
-            .count()
-            == 1;
-        let short = || {
-            header
-                .iter()
-                .position(|name| unique && name == last(&component.path))
-        };
+        let unique = inputs.iter().filter(|c| last(&c.path) == last(&component.path)).count() == 1;
+        let short = || header.iter().position(|name| unique && name == last(&component.path));
         full.or_else(short).ok_or_else(|| {
-            csv_error(
-                1,
-                format!(
-                    "no column `{}`; the header must name {wanted}",
-                    component.path
-                ),
-            )
+            csv_error(1, format!("no column `{}`; the header must name {wanted}", component.path))
         })
     };
     let columns = inputs.iter().map(column).collect::<Result<Vec<_>, _>>()?;
@@ -228,21 +189,11 @@ fn read_records(path: &Path, inputs: &[Component]) -> Result<Vec<Record>, CliErr
             let field = row.get(column).unwrap_or_default();
             word(field, component.kind).ok_or_else(|| {
                 let kind = component.kind.wgsl();
-                csv_error(
-                    line,
-                    format!("column `{}`: `{field}` is no {kind}", component.path),
-                )
+                csv_error(line, format!("column `{}`: `{field}` is no {kind}", component.path))
             })
         };
-        let words = inputs
-            .iter()
-            .zip(&columns)
-            .map(parse)
-            .collect::<Result<Vec<_>, _>>()?;
-        records.push(Record {
-            name: format!("{}", index + 1),
-            words,
-        });
+        let words = inputs.iter().zip(&columns).map(parse).collect::<Result<Vec<_>, _>>()?;
+        records.push(Record { name: format!("{}", index + 1), words });
     }
     Ok(records)
 }
@@ -251,13 +202,7 @@ fn word(field: &str, kind: Kind) -> Option<Word<f32>> {
     match kind {
         Kind::Float => field.parse().ok().map(Word::Float),
         Kind::Unsigned => field.parse().ok().map(Word::Integer),
-        Kind::Signed => field
-            .parse::<i32>()
-            .ok()
-            .map(|value| Word::Integer(value as u32)),
-        Kind::Bool => field
-            .parse::<bool>()
-            .ok()
-            .map(|value| Word::Integer(value.into())),
+        Kind::Signed => field.parse::<i32>().ok().map(|value| Word::Integer(value as u32)),
+        Kind::Bool => field.parse::<bool>().ok().map(|value| Word::Integer(value.into())),
     }
 }

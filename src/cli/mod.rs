@@ -112,14 +112,10 @@ fn parse_vector(text: &str) -> Result<Vec3, String> {
         return Err("expected three numbers, as in -1,2,0.5".into());
     };
     let number = |text: &str| {
-        let value: f64 = text
-            .parse()
-            .map_err(|_| format!("`{text}` is not a number"))?;
+        let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
         match (value as f32).is_finite() {
             true => Ok(value as f32),
-            false => Err(format!(
-                "`{text}` is outside float range, 3.4e38 at the most"
-            )),
+            false => Err(format!("`{text}` is outside float range, 3.4e38 at the most")),
         }
     };
     Ok(Vec3::new(number(x)?, number(y)?, number(z)?))

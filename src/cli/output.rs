@@ -16,10 +16,7 @@ pub struct Outputs {
 impl Outputs {
     /// Adds a file's bytes; nothing shows under `path` yet.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-        let wrap = |source| CliError::Write {
-            path: path.into(),
-            source,
-        };
+        let wrap = |source| CliError::Write { path: path.into(), source };
         if path.is_dir() {
             return Err(wrap(std::io::ErrorKind::IsADirectory.into()));
         }
@@ -51,10 +48,7 @@ impl Outputs {
                 picture.height,
                 image::ExtendedColorType::Rgba8,
             )
-            .map_err(|source| CliError::Encode {
-                path: path.into(),
-                source,
-            })?;
+            .map_err(|source| CliError::Encode { path: path.into(), source })?;
         self.add(path, &bytes)
     }
 
@@ -62,10 +56,8 @@ impl Outputs {
     pub fn finish(self) -> Result<Vec<PathBuf>, CliError> {
         let mut paths = Vec::new();
         for (path, file) in self.files {
-            file.persist(&path).map_err(|error| CliError::Write {
-                path: path.clone(),
-                source: error.error,
-            })?;
+            file.persist(&path)
+                .map_err(|error| CliError::Write { path: path.clone(), source: error.error })?;
             paths.push(path);
         }
         Ok(paths)
@@ -76,10 +68,9 @@ impl Outputs {
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(CliError::Write {
-            path: "standard output".into(),
-            source: error,
-        }),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(CliError::Write { path: "standard output".into(), source: error })
+        }
         _ => Ok(()),
     }
 }
@@ -95,8 +86,5 @@ pub fn write_or_print(path: Option<&Path>, text: &str) -> Result<(), CliError> {
 
 /// Reads a text file.
 pub fn read_text(path: &Path) -> Result<String, CliError> {
-    std::fs::read_to_string(path).map_err(|source| CliError::Read {
-        path: path.into(),
-        source,
-    })
+    std::fs::read_to_string(path).map_err(|source| CliError::Read { path: path.into(), source })
 }

@@ -118,9 +118,7 @@ impl MethodName {
             MethodName::FragmentDepth => Ok(Method::FragmentDepth),
             planned => Err(CliError::NotBuilt {
                 option: "--method",
-                value: planned
-                    .to_possible_value()
-                    .map_or(String::new(), |v| v.get_name().into()),
+                value: planned.to_possible_value().map_or(String::new(), |v| v.get_name().into()),
                 built: "vertex, fragment-depth",
             }),
         }
@@ -128,35 +126,24 @@ impl MethodName {
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let number = |text: &str| {
-        text.parse()
-            .map_err(|_| format!("`{text}` is not a whole number"))
-    };
-    let (width, height) = text
-        .split_once('x')
-        .ok_or("expected WIDTHxHEIGHT, as in 960x720")?;
+    let number = |text: &str| text.parse().map_err(|_| format!("`{text}` is not a whole number"));
+    let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 960x720")?;
     Ok([number(width)?, number(height)?])
 }
 
 /// `dpsm` with no command: the two scenes of Brabec, Annen and Seidel 2002.
 pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
     let device = adapter.open()?;
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Write {
-        path: folder.into(),
-        source,
-    })?;
+    std::fs::create_dir_all(folder)
+        .map_err(|source| CliError::Write { path: folder.into(), source })?;
     let mut report = format!("{}\n", describe(device.as_ref()));
     for name in ["brabec-room", "brabec-ceiling"] {
         let scene = scene::open(name, &Options::default())?;
         let light = scene.default_light();
         let camera = scene.default_camera(light.position);
         // 512 x 512 maps and picture, as in the paper's section 5
-        let settings = Settings {
-            size: 512,
-            image: [512, 512],
-            views: true,
-            ..Settings::default()
-        };
+        let settings =
+            Settings { size: 512, image: [512, 512], views: true, ..Settings::default() };
         let output = folder.join(format!("{name}.png"));
         let axis = light.axis.unwrap_or(Vec3::NEG_Y);
         let frame = frame(&scene, &light, axis, &camera, settings)?;
@@ -185,29 +172,15 @@ pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(),
         bias: arguments.bias,
         views: arguments.maps,
     };
-    let scene = scene::open(
-        &arguments.scene,
-        &Options {
-            walls: arguments.walls,
-        },
-    )?;
+    let scene = scene::open(&arguments.scene, &Options { walls: arguments.walls })?;
     for warning in &scene.warnings {
         eprintln!("dpsm: {warning}");
     }
     let mut light = scene.default_light();
     match arguments.light {
-        Some(position) => {
-            light = Light {
-                position,
-                axis: None,
-                ..light
-            }
-        }
+        Some(position) => light = Light { position, axis: None, ..light },
         None if scene.lights.len() > 1 => {
-            eprintln!(
-                "dpsm: the scene has {} lights; using the first",
-                scene.lights.len()
-            );
+            eprintln!("dpsm: the scene has {} lights; using the first", scene.lights.len());
         }
         None => {}
     }
@@ -221,12 +194,7 @@ pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(),
     let device = adapter.open()?;
     let mut report = format!("{}\n", describe(device.as_ref()));
     let frame = frame(&scene, &light, axis, &camera, settings)?;
-    report.push_str(&picture(
-        device.as_ref(),
-        &scene.name,
-        &frame,
-        &arguments.output,
-    )?);
+    report.push_str(&picture(device.as_ref(), &scene.name, &frame, &arguments.output)?);
     print(&report)
 }
 
@@ -239,10 +207,7 @@ fn frame(
 ) -> Result<Frame, CliError> {
     let hemispherical = light.axis.is_some();
     let frame = Frame::new(scene, light.position, axis, hemispherical, camera, settings)?;
-    Ok(Frame {
-        color: light.color,
-        ..frame
-    })
+    Ok(Frame { color: light.color, ..frame })
 }
 
 /// Renders one picture and its companions, and reports on it.
@@ -293,9 +258,5 @@ fn grey(maps: &DepthMaps, layer: u32) -> Picture {
         [value, value, value, 255]
     };
     let pixels = maps.layer(layer).iter().map(shade).collect();
-    Picture {
-        width: maps.size,
-        height: maps.size,
-        pixels,
-    }
+    Picture { width: maps.size, height: maps.size, pixels }
 }

@@ -42,11 +42,7 @@ pub fn modules() -> Result<(), CliError> {
             [] => "nothing".into(),
             imports => imports.join(", "),
         };
-        let _ = writeln!(
-            text,
-            "{:<12}{}\n{:12}imports {imports}",
-            module.name, module.summary, ""
-        );
+        let _ = writeln!(text, "{:<12}{}\n{:12}imports {imports}", module.name, module.summary, "");
     }
     print(&text)
 }
@@ -82,8 +78,5 @@ fn is_file(name: &str) -> bool {
 }
 
 fn link_file(path: &Path) -> Result<Linked, CliError> {
-    Ok(dpsm::link_source(
-        &path.display().to_string(),
-        &read_text(path)?,
-    )?)
+    Ok(dpsm::link_source(&path.display().to_string(), &read_text(path)?)?)
 }

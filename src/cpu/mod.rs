@@ -27,10 +27,7 @@ pub fn render(frame: &Frame) -> Rendering {
     let mut maps = DepthMaps::empty(size, hemispheres, Sampling::Nearest);
     let mut timings = Vec::new();
     let texels = size as usize * size as usize;
-    let layers = maps
-        .depths
-        .chunks_mut(texels)
-        .zip(["front map", "back map"]);
+    let layers = maps.depths.chunks_mut(texels).zip(["front map", "back map"]);
     for (hemisphere, (layer, name)) in (0..).zip(layers) {
         let start = Instant::now();
         map_pass(frame, hemisphere, layer);
@@ -47,12 +44,7 @@ pub fn render(frame: &Frame) -> Rendering {
             timings.push((name.to_string(), start.elapsed()));
         }
     }
-    Rendering {
-        lit,
-        maps,
-        views,
-        timings,
-    }
+    Rendering { lit, maps, views, timings }
 }
 
 /// Interpolates three values with a fragment's weights.
@@ -75,12 +67,7 @@ fn vector([x, y, z]: [f32; 3]) -> scalar::Vec3<f32> {
 
 /// One hemisphere's map: stored depths of all casters.
 fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
-    let Frame {
-        light,
-        bias,
-        settings,
-        ..
-    } = frame;
+    let Frame { light, bias, settings, .. } = frame;
     let place = |vertex: &Vertex| {
         let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
         (p, dpsm_caster_vertex(p, *light, *bias))
@@ -92,9 +79,8 @@ fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
         triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
             let (keep, depth) = match settings.method {
                 Method::Vertex => {
-                    let [value] = mix(fragment.weights, corners, |(_, vertex)| {
-                        [vertex.hemisphere_value]
-                    });
+                    let [value] =
+                        mix(fragment.weights, corners, |(_, vertex)| [vertex.hemisphere_value]);
                     (dpsm_caster_keep(value), fragment.depth)
                 }
                 Method::FragmentDepth => {
@@ -163,11 +149,7 @@ fn color(
             });
         }
     });
-    Picture {
-        width,
-        height,
-        pixels,
-    }
+    Picture { width, height, pixels }
 }
 
 /// The camera's projection, as camera.wesl's `project`.
@@ -181,30 +163,40 @@ fn project(view: &View, position: Vec3) -> Vec4<f32> {
     )
 }
 
+/// A pixel's surface: the triangle's index and the light-space point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePoint {
+    /// Index in the frame's triangles.
+    pub triangle: u32,
+    /// Light-space position.
+    pub p: scalar::Vec3<f32>,
+}
+
+/// What the camera sees through each pixel, row by row from the top.
+pub fn surface_points(frame: &Frame) -> Vec<Option<SurfacePoint>> {
+    let point = |(triangle, weights)| SurfacePoint {
+        triangle,
+        p: Surface::new(frame, triangle, weights).p,
+    };
+    seen_by_camera(frame).into_iter().map(|seen| seen.map(point)).collect()
+}
+
+fn seen_by_camera(frame: &Frame) -> Vec<Visible> {
+    let Frame { view, settings, .. } = frame;
+    let clip: Vec<_> = frame.vertices.iter().map(|v| project(view, v.position)).collect();
+    let nearness = |_: usize, fragment: &Fragment| Some(fragment.depth);
+    visible(&frame.triangles, &clip, settings.image, view.near, nearness)
+}
+
 /// The lit image.
 fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
-    let Frame {
-        light,
-        view,
-        settings,
-        ..
-    } = frame;
-    let clip: Vec<_> = frame
-        .vertices
-        .iter()
-        .map(|v| project(view, v.position))
-        .collect();
-    let nearness = |_: usize, fragment: &Fragment| Some(fragment.depth);
-    let seen = visible(&frame.triangles, &clip, settings.image, view.near, nearness);
+    let Frame { light, view, settings, .. } = frame;
+    let seen = seen_by_camera(frame);
     let at_vertices: Vec<DpsmReceiverVertex<f32>> = match settings.lookup {
         Lookup::Pixel => Vec::new(),
         Lookup::Vertex => {
             let receiver = |v: &Vertex| dpsm_to_light(float(v.position), *light);
-            frame
-                .vertices
-                .iter()
-                .map(|v| dpsm_receiver_vertex(receiver(v), *light))
-                .collect()
+            frame.vertices.iter().map(|v| dpsm_receiver_vertex(receiver(v), *light)).collect()
         }
     };
     let eye = dpsm_to_light(float(view.eye), *light);
@@ -215,21 +207,11 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
-                    let DpsmReceiverVertex {
-                        front,
-                        back,
-                        depth,
-                        hemisphere_value,
-                    } = at;
+                    let DpsmReceiverVertex { front, back, depth, hemisphere_value } = at;
                     [front.x, front.y, back.x, back.y, depth, hemisphere_value]
                 });
                 let (front, back) = (Vec2::new(fx, fy), Vec2::new(bx, by));
-                let at = DpsmReceiverVertex {
-                    front,
-                    back,
-                    depth,
-                    hemisphere_value,
-                };
+                let at = DpsmReceiverVertex { front, back, depth, hemisphere_value };
                 dpsm_visibility_vertex(maps, at, *light, 0.0)
             }
         };
@@ -239,9 +221,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
 
 /// What the light sees of one hemisphere.
 fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
-    let Frame {
-        light, settings, ..
-    } = frame;
+    let Frame { light, settings, .. } = frame;
     let place = |vertex: &Vertex| {
         let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
         dpsm_caster_vertex(p, *light, 0.0)
@@ -251,11 +231,7 @@ fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
     let image = [settings.size; 2];
     let seen = visible(&frame.triangles, &clip, image, 1.0, |index, fragment| {
         let corners = frame.triangles[index].map(|i| placed[i as usize]);
-        let [value] = mix(
-            fragment.weights,
-            corners,
-            |vertex| [vertex.hemisphere_value],
-        );
+        let [value] = mix(fragment.weights, corners, |vertex| [vertex.hemisphere_value]);
         let inside = dpsm_caster_keep(value) && (0.0..=1.0).contains(&fragment.depth);
         inside.then_some(-fragment.depth)
     });
@@ -277,18 +253,12 @@ impl Surface {
     fn new(frame: &Frame, triangle: u32, weights: [f32; 3]) -> Self {
         let light = frame.light;
         let corners = frame.triangles[triangle as usize].map(|i| frame.vertices[i as usize]);
-        let p = mix(weights, corners, |v| {
-            words(dpsm_to_light(float(v.position), light))
-        });
+        let p = mix(weights, corners, |v| words(dpsm_to_light(float(v.position), light)));
         let normal = mix(weights, corners, |v| {
             let n = float(v.normal);
             [light.right.dot(n), light.up.dot(n), light.forward.dot(n)]
         });
-        Self {
-            p: vector(p),
-            normal: vector(normal),
-            albedo: corners[0].albedo,
-        }
+        Self { p: vector(p), normal: vector(normal), albedo: corners[0].albedo }
     }
 
     /// Lit colour seen from `eye` in light space, as camera.wesl's `shade`.
@@ -312,12 +282,8 @@ impl Surface {
 }
 
 /// A linear channel as an sRGB byte.
-fn srgb(linear: f32) -> u8 {
+pub fn srgb(linear: f32) -> u8 {
     let c = linear.clamp(0.0, 1.0);
-    let encoded = if c <= 0.0031308 {
-        12.92 * c
-    } else {
-        1.055 * c.powf(1.0 / 2.4) - 0.055
-    };
+    let encoded = if c <= 0.0031308 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0).round() as u8
 }

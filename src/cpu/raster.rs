@@ -45,12 +45,7 @@ pub fn triangle(
     }
     let polygon = clip_w(&corners, f64::from(smallest_w));
     for i in 1..polygon.len().saturating_sub(1) {
-        fill(
-            [polygon[0], polygon[i], polygon[i + 1]],
-            width,
-            height,
-            emit,
-        );
+        fill([polygon[0], polygon[i], polygon[i + 1]], width, height, emit);
     }
 }
 
@@ -103,19 +98,11 @@ fn fill(mut corners: [Corner; 3], width: u32, height: u32, emit: &mut impl FnMut
         clamp((low - 0.5).ceil())..clamp((high + 0.5).floor())
     };
     let top_left = |a: [f64; 2], b: [f64; 2]| b[1] < a[1] || (b[1] == a[1] && b[0] > a[0]);
-    let rules = [
-        top_left(at[1], at[2]),
-        top_left(at[2], at[0]),
-        top_left(at[0], at[1]),
-    ];
+    let rules = [top_left(at[1], at[2]), top_left(at[2], at[0]), top_left(at[0], at[1])];
     for y in bounds(1, height) {
         for x in bounds(0, width) {
             let p = [f64::from(x) + 0.5, f64::from(y) + 0.5];
-            let edges = [
-                edge(at[1], at[2], p),
-                edge(at[2], at[0], p),
-                edge(at[0], at[1], p),
-            ];
+            let edges = [edge(at[1], at[2], p), edge(at[2], at[0], p), edge(at[0], at[1], p)];
             let covers = |(&e, &rule): (&f64, &bool)| e > 0.0 || (e == 0.0 && rule);
             if !edges.iter().zip(&rules).all(covers) {
                 continue;
@@ -127,12 +114,7 @@ fn fill(mut corners: [Corner; 3], width: u32, height: u32, emit: &mut impl FnMut
             let depth = sum(&|c| c.clip[2] / c.clip[3]) as f32;
             let inverse_w = sum(&|c| 1.0 / c.clip[3]);
             let weight = |i: usize| (sum(&|c| c.weights[i] / c.clip[3]) / inverse_w) as f32;
-            emit(Fragment {
-                x,
-                y,
-                weights: std::array::from_fn(weight),
-                depth,
-            });
+            emit(Fragment { x, y, weights: std::array::from_fn(weight), depth });
         }
     }
 }

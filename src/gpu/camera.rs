@@ -31,35 +31,20 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
         Lookup::Pixel => "pixel_lookup",
         Lookup::Vertex => "vertex_lookup",
     };
-    let pass = Pass {
-        name: "camera",
-        entry,
-        reversed: true,
-        image: frame.settings.image,
-    };
+    let pass = Pass { name: "camera", entry, reversed: true, image: frame.settings.image };
     let (lit, time) = camera.draw(device, &pass, &mesh, 0)?;
     timings.push(time);
     let mut views = Vec::new();
     if frame.settings.views {
         let image = [frame.settings.size; 2];
         for (hemisphere, name) in (0..maps.hemispheres()).zip(["front view", "back view"]) {
-            let pass = Pass {
-                name,
-                entry: "view",
-                reversed: false,
-                image,
-            };
+            let pass = Pass { name, entry: "view", reversed: false, image };
             let (view, time) = camera.draw(device, &pass, &mesh, hemisphere)?;
             views.push(view);
             timings.push(time);
         }
     }
-    Ok(Rendering {
-        lit,
-        maps: maps.download(device)?,
-        views,
-        timings,
-    })
+    Ok(Rendering { lit, maps: maps.download(device)?, views, timings })
 }
 
 /// One colour pass.
@@ -97,38 +82,21 @@ impl<'a> Camera<'a> {
         words.extend(light_words(&frame.light));
         let uniform = uniform_buffer(device, &words)?;
         let sampler = comparison_sampler(device, Sampling::Nearest)?;
-        Ok(Self {
-            module,
-            uniform,
-            sampler,
-            maps,
-        })
+        Ok(Self { module, uniform, sampler, maps })
     }
 
     /// Draws all triangles with one pair of entry points and reads the picture back.
     fn draw(
         &self,
         device: &Device,
-        &Pass {
-            name,
-            entry,
-            reversed,
-            image: [width, height],
-        }: &Pass<'_>,
+        &Pass { name, entry, reversed, image: [width, height] }: &Pass<'_>,
         mesh: &MeshBuffers,
         instance: u32,
     ) -> Result<(Picture, (String, std::time::Duration)), GpuError> {
         let limit = device.device.limits().max_texture_dimension_2d;
-        if let Some(&asked) = [width, height]
-            .iter()
-            .find(|&&side| !(1..=limit).contains(&side))
-        {
+        if let Some(&asked) = [width, height].iter().find(|&&side| !(1..=limit).contains(&side)) {
             let what = "image size";
-            return Err(GpuError::Limit {
-                what,
-                asked: asked.into(),
-                limit: limit.into(),
-            });
+            return Err(GpuError::Limit { what, asked: asked.into(), limit: limit.into() });
         }
         let (compare, clear) = match reversed {
             true => (wgpu::CompareFunction::Greater, 0.0),
@@ -138,11 +106,7 @@ impl<'a> Camera<'a> {
         let target = |format, usage| {
             device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(name),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
@@ -187,24 +151,22 @@ impl<'a> Camera<'a> {
         entry: &str,
         compare: wgpu::CompareFunction,
     ) -> wgpu::RenderPipeline {
-        device
-            .device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(entry),
-                layout: None,
-                vertex: vertex_state(&self.module, entry),
-                primitive: Default::default(),
-                depth_stencil: Some(depth_state(DEPTH, compare)),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.module,
-                    entry_point: Some(&format!("{entry}_fragment")),
-                    compilation_options: Default::default(),
-                    targets: &[Some(COLOR.into())],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+        device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(entry),
+            layout: None,
+            vertex: vertex_state(&self.module, entry),
+            primitive: Default::default(),
+            depth_stencil: Some(depth_state(DEPTH, compare)),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some(&format!("{entry}_fragment")),
+                compilation_options: Default::default(),
+                targets: &[Some(COLOR.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     }
 
     fn group(&self, device: &Device, pipeline: &wgpu::RenderPipeline) -> wgpu::BindGroup {
@@ -212,10 +174,7 @@ impl<'a> Camera<'a> {
             label: Some("camera"),
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: self.uniform.as_entire_binding(),
-                },
+                wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
                 wgpu::BindGroupEntry {
                     binding: 1,
                     resource: wgpu::BindingResource::TextureView(&self.maps.view),
@@ -271,9 +230,5 @@ fn picture(device: &Device, texture: &wgpu::Texture) -> Result<Picture, GpuError
     let data = device.read(&back, bytes)?;
     let line = |line: &[u8]| -> Vec<[u8; 4]> { line[..width as usize * 4].as_chunks().0.to_vec() };
     let pixels = data.chunks(row as usize).flat_map(line).collect();
-    Ok(Picture {
-        width,
-        height,
-        pixels,
-    })
+    Ok(Picture { width, height, pixels })
 }

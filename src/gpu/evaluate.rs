@@ -87,37 +87,25 @@ impl<'a> Evaluator<'a> {
     /// Compiles a function of a linked text.
     pub fn of(device: &'a Device, linked: &Linked, function: &str) -> Result<Self, GpuError> {
         let validated = validate(linked)?;
-        let signature =
-            Signature::of(&validated.module, function).map_err(|reason| GpuError::Unsupported {
-                function: function.into(),
-                reason,
-            })?;
+        let signature = Signature::of(&validated.module, function)
+            .map_err(|reason| GpuError::Unsupported { function: function.into(), reason })?;
         let text = format!("{}\n{}", linked.text, entry_point(&signature));
         let source = wgpu::ShaderSource::Wgsl(text.as_str().into());
         let pipeline = device.step(function, || {
-            let module = device
-                .device
-                .create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(function),
-                    source,
-                });
-            device
-                .device
-                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some(function),
-                    layout: None,
-                    module: &module,
-                    entry_point: Some("evaluate"),
-                    compilation_options: Default::default(),
-                    cache: None,
-                })
+            let module = device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(function),
+                source,
+            });
+            device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(function),
+                layout: None,
+                module: &module,
+                entry_point: Some("evaluate"),
+                compilation_options: Default::default(),
+                cache: None,
+            })
         })?;
-        Ok(Self {
-            device,
-            signature,
-            text,
-            pipeline,
-        })
+        Ok(Self { device, signature, text, pipeline })
     }
 
     /// Bytes of one input record.
@@ -131,10 +119,7 @@ impl<'a> Evaluator<'a> {
         words: &[u32],
         resources: Option<Resources<'_>>,
     ) -> Result<Evaluation, GpuError> {
-        let (taken, given) = (
-            self.signature.inputs().len(),
-            self.signature.outputs().len(),
-        );
+        let (taken, given) = (self.signature.inputs().len(), self.signature.outputs().len());
         if !words.len().is_multiple_of(taken) {
             return Err(self.record_error(format!("{} words in all", words.len())));
         }
@@ -144,22 +129,13 @@ impl<'a> Evaluator<'a> {
                 reason: "it takes a texture, and none was given".into(),
             });
         }
-        let groups = self
-            .device
-            .device
-            .limits()
-            .max_compute_workgroups_per_dimension;
+        let groups = self.device.device.limits().max_compute_workgroups_per_dimension;
         let fitting = self.device.chunk_bytes / (4 * taken.max(given) as u64);
         let chunk = fitting.clamp(1, u64::from(groups) * u64::from(WORKGROUP)) as usize;
-        let mut evaluation = Evaluation {
-            words: Vec::new(),
-            chunks: 0,
-        };
+        let mut evaluation = Evaluation { words: Vec::new(), chunks: 0 };
         for records in words.chunks(chunk * taken) {
             let results = self.run_chunk(records, records.len() / taken, given, resources)?;
-            evaluation
-                .words
-                .extend_from_slice(bytemuck::cast_slice(&results));
+            evaluation.words.extend_from_slice(bytemuck::cast_slice(&results));
             evaluation.chunks += 1;
         }
         Ok(evaluation)
@@ -181,21 +157,12 @@ impl<'a> Evaluator<'a> {
             Usage::STORAGE | Usage::COPY_DST,
         )?;
         let output =
-            self.device
-                .buffer("evaluation output", bytes, Usage::STORAGE | Usage::COPY_SRC)?;
-        let back = self.device.buffer(
-            "evaluation result",
-            bytes,
-            Usage::MAP_READ | Usage::COPY_DST,
-        )?;
+            self.device.buffer("evaluation output", bytes, Usage::STORAGE | Usage::COPY_SRC)?;
+        let back =
+            self.device.buffer("evaluation result", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
         let encoder = self.device.step(name, || {
-            self.device
-                .queue
-                .write_buffer(&input, 0, bytemuck::cast_slice(records));
-            let mut encoder = self
-                .device
-                .device
-                .create_command_encoder(&Default::default());
+            self.device.queue.write_buffer(&input, 0, bytemuck::cast_slice(records));
+            let mut encoder = self.device.device.create_command_encoder(&Default::default());
             let mut pass = encoder.begin_compute_pass(&Default::default());
             self.record(&mut pass, &input, &output, count, resources);
             drop(pass);
@@ -217,31 +184,14 @@ impl<'a> Evaluator<'a> {
     ) {
         let words = |buffer, signature: usize| {
             let size = wgpu::BufferSize::new((count * signature * 4) as u64);
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer,
-                offset: 0,
-                size,
-            })
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
         };
-        let (taken, given) = (
-            self.signature.inputs().len(),
-            self.signature.outputs().len(),
-        );
+        let (taken, given) = (self.signature.inputs().len(), self.signature.outputs().len());
         let mut entries = vec![
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: words(input, taken),
-            },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: words(output, given),
-            },
+            wgpu::BindGroupEntry { binding: 0, resource: words(input, taken) },
+            wgpu::BindGroupEntry { binding: 1, resource: words(output, given) },
         ];
-        let bound = self
-            .signature
-            .arguments
-            .iter()
-            .filter(|(_, shape)| shape.is_resource());
+        let bound = self.signature.arguments.iter().filter(|(_, shape)| shape.is_resource());
         for ((_, shape), binding) in bound.zip(2..) {
             let Some(resources) = resources else { continue };
             let resource = match shape {
@@ -250,14 +200,11 @@ impl<'a> Evaluator<'a> {
             };
             entries.push(wgpu::BindGroupEntry { binding, resource });
         }
-        let group = self
-            .device
-            .device
-            .create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(&self.signature.name),
-                layout: &self.pipeline.get_bind_group_layout(0),
-                entries: &entries,
-            });
+        let group = self.device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&self.signature.name),
+            layout: &self.pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
@@ -276,7 +223,7 @@ impl<'a> Evaluator<'a> {
 }
 
 /// The generated entry point: unpacks a record's words, calls the function, packs its result.
-fn entry_point(signature: &Signature) -> String {
+pub fn entry_point(signature: &Signature) -> String {
     let mut text = String::from(
         "@group(0) @binding(0) var<storage, read> evaluation_input: array<u32>;\n\
          @group(0) @binding(1) var<storage, read_write> evaluation_output: array<u32>;\n",
@@ -313,10 +260,7 @@ fn entry_point(signature: &Signature) -> String {
             Kind::Float | Kind::Signed => format!("bitcast<u32>({value})"),
         };
         let count = outputs.len();
-        let _ = writeln!(
-            text,
-            "    evaluation_output[id.x * {count}u + {index}u] = {packed};"
-        );
+        let _ = writeln!(text, "    evaluation_output[id.x * {count}u + {index}u] = {packed};");
     }
     text.push_str("}\n");
     text

@@ -83,9 +83,8 @@ impl ShadowMaps {
             frame.light.hemispheres,
             settings.format.texture(),
         )?;
-        let layers = (0..frame.light.hemispheres)
-            .map(|layer| layer_view(&texture, layer))
-            .collect();
+        let layers =
+            (0..frame.light.hemispheres).map(|layer| layer_view(&texture, layer)).collect();
         let (vertex, fragment) = match settings.method {
             Method::Vertex => ("vertex_method", "vertex_method_fragment"),
             Method::FragmentDepth => ("fragment_depth_method", "fragment_depth_method_fragment"),
@@ -95,27 +94,25 @@ impl ShadowMaps {
         uniform.extend([frame.bias.to_bits(), 0, 0, 0]);
         let uniform = uniform_buffer(device, &uniform)?;
         let pipeline = device.step("the map pipeline", || {
-            device
-                .device
-                .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                    label: Some("map"),
-                    layout: None,
-                    vertex: vertex_state(&module, vertex),
-                    primitive: Default::default(),
-                    depth_stencil: Some(depth_state(
-                        settings.format.texture(),
-                        wgpu::CompareFunction::Less,
-                    )),
-                    multisample: Default::default(),
-                    fragment: Some(wgpu::FragmentState {
-                        module: &module,
-                        entry_point: Some(fragment),
-                        compilation_options: Default::default(),
-                        targets: &[],
-                    }),
-                    multiview_mask: None,
-                    cache: None,
-                })
+            device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("map"),
+                layout: None,
+                vertex: vertex_state(&module, vertex),
+                primitive: Default::default(),
+                depth_stencil: Some(depth_state(
+                    settings.format.texture(),
+                    wgpu::CompareFunction::Less,
+                )),
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &module,
+                    entry_point: Some(fragment),
+                    compilation_options: Default::default(),
+                    targets: &[],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
         })?;
         let group = device.step("the map bindings", || {
             device.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -131,13 +128,7 @@ impl ShadowMaps {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        Ok(Self {
-            texture,
-            view,
-            layers,
-            pipeline,
-            group,
-        })
+        Ok(Self { texture, view, layers, pipeline, group })
     }
 
     /// Number of maps.
@@ -184,21 +175,13 @@ pub fn depth_texture(
         ("number of maps", layers, limits.max_texture_array_layers),
     ] {
         if !(1..=limit).contains(&asked) {
-            return Err(GpuError::Limit {
-                what,
-                asked: asked.into(),
-                limit: limit.into(),
-            });
+            return Err(GpuError::Limit { what, asked: asked.into(), limit: limit.into() });
         }
     }
     device.step("the maps' texture", || {
         device.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("maps"),
-            size: wgpu::Extent3d {
-                width: size,
-                height: size,
-                depth_or_array_layers: layers,
-            },
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: layers },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -266,10 +249,7 @@ pub fn shader(device: &Device, path: &str, text: &str) -> Result<wgpu::ShaderMod
     let linked = link_source(path, text)?;
     validate(&linked)?;
     let source = wgpu::ShaderSource::Wgsl(linked.text.as_str().into());
-    let descriptor = wgpu::ShaderModuleDescriptor {
-        label: Some(path),
-        source,
-    };
+    let descriptor = wgpu::ShaderModuleDescriptor { label: Some(path), source };
     device.step(path, || device.device.create_shader_module(descriptor))
 }
 
@@ -283,8 +263,6 @@ pub fn uniform_buffer(device: &Device, words: &[u32]) -> Result<wgpu::Buffer, Gp
     let bytes: &[u8] = bytemuck::cast_slice(words);
     let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
     let buffer = device.buffer("uniform buffer bytes", bytes.len() as u64, usage)?;
-    device.step("the uniforms", || {
-        device.queue.write_buffer(&buffer, 0, bytes)
-    })?;
+    device.step("the uniforms", || device.queue.write_buffer(&buffer, 0, bytes))?;
     Ok(buffer)
 }

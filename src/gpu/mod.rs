@@ -7,7 +7,7 @@ mod texels;
 mod timer;
 
 pub use camera::{comparison_sampler, render};
-pub use evaluate::{Evaluation, Evaluator, Resources};
+pub use evaluate::{Evaluation, Evaluator, Resources, entry_point};
 pub use maps::{MeshBuffers, ShadowMaps};
 pub use texels::Texels;
 pub use timer::{Stamps, compute_writes};
@@ -129,21 +129,14 @@ impl Device {
         let instance = wgpu::Instance::new(descriptor);
         let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
         adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-        let names: Vec<_> = adapters
-            .iter()
-            .map(|adapter| adapter.get_info().name)
-            .collect();
+        let names: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         let wanted = std::env::var("WGPU_ADAPTER_NAME").unwrap_or_default();
         let fits = |adapter: &wgpu::Adapter| {
             let name = adapter.get_info().name.to_lowercase();
             name.contains(&wanted.to_lowercase())
         };
         let Some(adapter) = adapters.into_iter().find(fits) else {
-            let found = if names.is_empty() {
-                "none".into()
-            } else {
-                names.join(", ")
-            };
+            let found = if names.is_empty() { "none".into() } else { names.join(", ") };
             let wanted = match wanted.as_str() {
                 "" => String::new(),
                 name => format!(" whose name contains `{name}`"),
@@ -164,33 +157,17 @@ impl Device {
         };
         let (device, queue) =
             pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| {
-                GpuError::NoDevice {
-                    adapter: info.name.clone(),
-                    message: error.to_string(),
-                }
+                GpuError::NoDevice { adapter: info.name.clone(), message: error.to_string() }
             })?;
         let limits = device.limits();
-        let chunk_bytes = CHUNK_BYTES
-            .min(limits.max_storage_buffer_binding_size)
-            .min(limits.max_buffer_size);
-        Ok(Self {
-            device,
-            queue,
-            info,
-            chunk_bytes,
-        })
+        let chunk_bytes =
+            CHUNK_BYTES.min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
+        Ok(Self { device, queue, info, chunk_bytes })
     }
 
     /// One line that names the adapter, its driver and back-end.
     pub fn describe(&self) -> String {
-        let wgpu::AdapterInfo {
-            name,
-            backend,
-            driver,
-            driver_info,
-            device_type,
-            ..
-        } = &self.info;
+        let wgpu::AdapterInfo { name, backend, driver, driver_info, device_type, .. } = &self.info;
         let software = match device_type {
             wgpu::DeviceType::Cpu => ", a software adapter",
             _ => "",
@@ -210,10 +187,9 @@ impl Device {
             return Err(GpuError::OutOfMemory { step: step.into() });
         }
         match errors.into_iter().flatten().next() {
-            Some(error) => Err(GpuError::Rejected {
-                step: step.into(),
-                message: error.to_string(),
-            }),
+            Some(error) => {
+                Err(GpuError::Rejected { step: step.into(), message: error.to_string() })
+            }
             None => Ok(result),
         }
     }
@@ -225,27 +201,16 @@ impl Device {
     }
 
     fn wait(&self, step: &str, index: wgpu::SubmissionIndex) -> Result<(), GpuError> {
-        let lost = |message| GpuError::Lost {
-            step: step.into(),
-            message,
-        };
-        let wait = wgpu::PollType::Wait {
-            submission_index: Some(index),
-            timeout: Some(PATIENCE),
-        };
-        self.device
-            .poll(wait)
-            .map_err(|error| lost(error.to_string()))?;
+        let lost = |message| GpuError::Lost { step: step.into(), message };
+        let wait = wgpu::PollType::Wait { submission_index: Some(index), timeout: Some(PATIENCE) };
+        self.device.poll(wait).map_err(|error| lost(error.to_string()))?;
         Ok(())
     }
 
     /// Reads a mappable buffer's first `bytes` bytes.
     pub fn read(&self, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8>, GpuError> {
         let step = "reading back";
-        let lost = |message: String| GpuError::Lost {
-            step: step.into(),
-            message,
-        };
+        let lost = |message: String| GpuError::Lost { step: step.into(), message };
         if bytes == 0 {
             return Ok(Vec::new());
         }
@@ -255,18 +220,11 @@ impl Device {
                 let _ = sender.send(result); // the receiver outlives the poll below
             });
         })?;
-        let wait = wgpu::PollType::Wait {
-            submission_index: None,
-            timeout: Some(PATIENCE),
-        };
-        self.device
-            .poll(wait)
-            .map_err(|error| lost(error.to_string()))?;
+        let wait = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        self.device.poll(wait).map_err(|error| lost(error.to_string()))?;
         let mapped = receiver.recv().map_err(|error| lost(error.to_string()))?;
         mapped.map_err(|error| lost(error.to_string()))?;
-        let range = buffer
-            .get_mapped_range(..bytes)
-            .map_err(|error| lost(error.to_string()))?;
+        let range = buffer.get_mapped_range(..bytes).map_err(|error| lost(error.to_string()))?;
         let data = range.to_vec();
         drop(range);
         buffer.unmap();
@@ -283,18 +241,10 @@ impl Device {
         let size = bytes.max(16).next_multiple_of(4);
         let limit = self.device.limits().max_buffer_size;
         if size > limit {
-            return Err(GpuError::Limit {
-                what: label,
-                asked: size,
-                limit,
-            });
+            return Err(GpuError::Limit { what: label, asked: size, limit });
         }
-        let descriptor = wgpu::BufferDescriptor {
-            label: Some(label),
-            size,
-            usage,
-            mapped_at_creation: false,
-        };
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         self.step(label, || self.device.create_buffer(&descriptor))
     }
 }

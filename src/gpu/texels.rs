@@ -35,26 +35,20 @@ impl Texels {
         let limit = device.device.limits().max_storage_buffer_binding_size;
         if bytes > limit {
             let what = "bytes of all maps";
-            return Err(GpuError::Limit {
-                what,
-                asked: bytes,
-                limit,
-            });
+            return Err(GpuError::Limit { what, asked: bytes, limit });
         }
         let texels = device.buffer("texels", bytes, Usage::STORAGE | Usage::COPY_SRC)?;
         let back = device.buffer("texels read back", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
         let encoder = device.encode("reading the maps", |encoder| {
             let pipeline =
-                device
-                    .device
-                    .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                        label: Some("download"),
-                        layout: None,
-                        module: &self.module,
-                        entry_point: Some("download"),
-                        compilation_options: Default::default(),
-                        cache: None,
-                    });
+                device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some("download"),
+                    layout: None,
+                    module: &self.module,
+                    entry_point: Some("download"),
+                    compilation_options: Default::default(),
+                    cache: None,
+                });
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("download"),
                 layout: &pipeline.get_bind_group_layout(0),
@@ -63,10 +57,7 @@ impl Texels {
                         binding: 0,
                         resource: wgpu::BindingResource::TextureView(view),
                     },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: texels.as_entire_binding(),
-                    },
+                    wgpu::BindGroupEntry { binding: 1, resource: texels.as_entire_binding() },
                 ],
             });
             let mut pass = encoder.begin_compute_pass(&Default::default());
@@ -78,12 +69,7 @@ impl Texels {
         })?;
         device.submit("reading the maps", encoder)?;
         let depths = bytemuck::pod_collect_to_vec(&device.read(&back, bytes)?);
-        Ok(DepthMaps {
-            size,
-            layers,
-            depths,
-            sampling,
-        })
+        Ok(DepthMaps { size, layers, depths, sampling })
     }
 
     /// A depth texture that stores the given maps.
@@ -96,11 +82,8 @@ impl Texels {
         use wgpu::BufferUsages as Usage;
         let texture = depth_texture(device, maps.size, maps.layers, format.texture())?;
         let bytes: &[u8] = bytemuck::cast_slice(&maps.depths);
-        let depths = device.buffer(
-            "depths",
-            bytes.len() as u64,
-            Usage::STORAGE | Usage::COPY_DST,
-        )?;
+        let depths =
+            device.buffer("depths", bytes.len() as u64, Usage::STORAGE | Usage::COPY_DST)?;
         let encoder = device.encode("writing the maps", |encoder| {
             device.queue.write_buffer(&depths, 0, bytes);
             let pipeline = self.upload_pipeline(device, maps.size, format);
@@ -129,31 +112,29 @@ impl Texels {
     }
 
     fn upload_pipeline(&self, device: &Device, size: u32, format: Format) -> wgpu::RenderPipeline {
-        device
-            .device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some("upload"),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &self.module,
-                    entry_point: Some("upload"),
-                    compilation_options: Default::default(),
-                    buffers: &[],
+        device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("upload"),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some("upload"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: Some(depth_state(format.texture(), wgpu::CompareFunction::Always)),
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some("upload_fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &[("size", f64::from(size))],
+                    ..Default::default()
                 },
-                primitive: Default::default(),
-                depth_stencil: Some(depth_state(format.texture(), wgpu::CompareFunction::Always)),
-                multisample: Default::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.module,
-                    entry_point: Some("upload_fragment"),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &[("size", f64::from(size))],
-                        ..Default::default()
-                    },
-                    targets: &[],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+                targets: &[],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
     }
 }

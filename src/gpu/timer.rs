@@ -33,11 +33,7 @@ impl Device {
         name: &str,
         record: impl Fn(&mut wgpu::CommandEncoder, Stamps<'_>),
     ) -> Result<Option<Duration>, GpuError> {
-        if !self
-            .device
-            .features()
-            .contains(wgpu::Features::TIMESTAMP_QUERY)
-        {
+        if !self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             let start = Instant::now();
             let encoder = self.encode(name, |encoder| record(encoder, None))?;
             self.submit(name, encoder)?;

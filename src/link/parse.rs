@@ -59,23 +59,15 @@ pub(crate) struct File {
     pub locals: BTreeSet<String>,
 }
 
-const DECLARATIONS: [&str; 7] = [
-    "fn",
-    "struct",
-    "const",
-    "override",
-    "alias",
-    "var",
-    "const_assert",
-];
+const DECLARATIONS: [&str; 7] =
+    ["fn", "struct", "const", "override", "alias", "var", "const_assert"];
 const DIRECTIVES: [&str; 3] = ["enable", "requires", "diagnostic"];
 /// Reads a module (with its name) or a user's shader (without).
 pub(crate) fn parse(module: Option<&str>, path: &str, text: &str) -> Result<File, LinkError> {
     let source = Arc::new(Source::new(path, text));
     let all = tokenize(&source)?;
-    let (comments, tokens): (Vec<_>, Vec<_>) = all
-        .into_iter()
-        .partition(|token| token.kind == Kind::Comment);
+    let (comments, tokens): (Vec<_>, Vec<_>) =
+        all.into_iter().partition(|token| token.kind == Kind::Comment);
     let mut parser = Parser {
         pairs: Vec::new(),
         comments: comments.into_iter().map(|token| token.span).collect(),
@@ -115,9 +107,7 @@ impl Parser {
     }
 
     fn is_word(&self, at: usize) -> bool {
-        self.tokens
-            .get(at)
-            .is_some_and(|token| token.kind == Kind::Word)
+        self.tokens.get(at).is_some_and(|token| token.kind == Kind::Word)
     }
 
     /// Offset of a token; of the last one past the end.
@@ -127,10 +117,7 @@ impl Parser {
     }
 
     fn malformed(&self, at: usize, what: String) -> LinkError {
-        LinkError::Malformed {
-            place: self.file.source.place(self.offset(at)),
-            what,
-        }
+        LinkError::Malformed { place: self.file.source.place(self.offset(at)), what }
     }
 
     fn pair(&mut self) -> Result<(), LinkError> {

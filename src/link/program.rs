@@ -28,10 +28,7 @@ impl<'a> Program<'a> {
         let files: Vec<_> = files.collect();
         let names = files.iter().enumerate();
         let modules = names.filter_map(|(index, file)| Some((file.module.as_deref()?, index)));
-        Self {
-            modules: modules.collect(),
-            files,
-        }
+        Self { modules: modules.collect(), files }
     }
 
     fn get(&self, (file, item): Id) -> &'a Item {
@@ -64,10 +61,8 @@ impl<'a> Program<'a> {
         if let Some(item) = names.get(name) {
             return Ok((index, *item));
         }
-        let elsewhere = self
-            .modules
-            .iter()
-            .find(|(_, file)| self.files[**file].names.contains_key(name));
+        let elsewhere =
+            self.modules.iter().find(|(_, file)| self.files[**file].names.contains_key(name));
         Err(LinkError::UnknownItem {
             place: place(),
             module: module.to_owned(),
@@ -160,11 +155,7 @@ impl<'a> Program<'a> {
             match scope.insert(&import.item, id) {
                 Some(other) if other != id => {
                     return Err(LinkError::NameClash {
-                        place: if other.0 == file {
-                            self.place(other)
-                        } else {
-                            place()
-                        },
+                        place: if other.0 == file { self.place(other) } else { place() },
                         name: import.item.clone(),
                         other: self.place(if other.0 == file { id } else { other }),
                     });
@@ -179,10 +170,7 @@ impl<'a> Program<'a> {
     fn asserts(&self, file: usize, scope: &Scope, kept: &BTreeSet<Id>) -> Vec<Id> {
         let items = self.files[file].items.iter().enumerate();
         let asserts = items.filter(|(_, item)| {
-            let mut named = item
-                .words
-                .keys()
-                .filter_map(|word| scope.get(word.as_str()));
+            let mut named = item.words.keys().filter_map(|word| scope.get(word.as_str()));
             item.name.is_none() && named.all(|id| kept.contains(id))
         });
         asserts.map(|(index, _)| (file, index)).collect()
@@ -233,11 +221,7 @@ impl<'a> Program<'a> {
     }
 
     fn captured(&self, file: &File, word: &str, at: usize, other: Id) -> LinkError {
-        let root = if file.module.is_some() {
-            "super"
-        } else {
-            "dpsm"
-        };
+        let root = if file.module.is_some() { "super" } else { "dpsm" };
         LinkError::Captured {
             place: file.source.place(at),
             name: word.to_owned(),

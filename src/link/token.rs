@@ -20,11 +20,7 @@ impl Source {
         let text = text.replace("\r\n", "\n");
         let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
         let starts = std::iter::once(0).chain(breaks).collect();
-        Self {
-            path: path.to_owned(),
-            text,
-            starts,
-        }
+        Self { path: path.to_owned(), text, starts }
     }
 
     /// The 1-based line of a byte offset.
@@ -44,10 +40,7 @@ impl Source {
     }
 
     pub fn place(&self, offset: usize) -> Place {
-        Place {
-            file: self.path.clone(),
-            line: self.line_at(offset),
-        }
+        Place { file: self.path.clone(), line: self.line_at(offset) }
     }
 
     /// The number of line breaks between two offsets.
@@ -73,10 +66,7 @@ pub(crate) struct Token {
 
 /// WGSL's blankspace, which holds its line breaks.
 fn is_blank(c: char) -> bool {
-    matches!(
-        c,
-        ' ' | '\t'..='\r' | '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}'
-    )
+    matches!(c, ' ' | '\t'..='\r' | '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
 }
 
 fn ends_line(c: char) -> bool {
@@ -112,10 +102,7 @@ pub(crate) fn tokenize(source: &Source) -> Result<Vec<Token>, LinkError> {
                 Some(length) => (Kind::Comment, length),
                 None => {
                     let what = "unterminated comment".to_owned();
-                    return Err(LinkError::Malformed {
-                        place: source.place(at),
-                        what,
-                    });
+                    return Err(LinkError::Malformed { place: source.place(at), what });
                 }
             },
             ('0'..='9', _) | ('.', '0'..='9') => (Kind::Number, number(rest)),

@@ -59,9 +59,7 @@ mod bytes {
 
 /// The array layer that holds a hemisphere's map.
 pub fn dpsm_light_layer<T: Float>(light: DpsmLight<T>, hemisphere: u32) -> u32 {
-    light
-        .first_layer
-        .wrapping_add(select(hemisphere, 0, light.placement == DPSM_ATLAS))
+    light.first_layer.wrapping_add(select(hemisphere, 0, light.placement == DPSM_ATLAS))
 }
 
 /// A map's own texture coordinates st to those of the texture that holds it.

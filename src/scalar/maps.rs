@@ -36,12 +36,7 @@ impl DepthMaps {
     /// Maps in which nothing is stored: every depth is 1.
     pub fn empty(size: u32, layers: u32, sampling: Sampling) -> Self {
         let texels = layers as usize * size as usize * size as usize;
-        Self {
-            size,
-            layers,
-            depths: vec![1.0; texels],
-            sampling,
-        }
+        Self { size, layers, depths: vec![1.0; texels], sampling }
     }
 
     /// The index of a texel in `depths`, coordinates clamped to the map.

@@ -24,8 +24,7 @@ pub fn dpsm_unproject<T: Float>(uv: Vec2<T>) -> Vec3<T> {
 
 /// The angle in radians that a texel of an N x N map (size = N) spans at disk coordinates uv.
 pub fn dpsm_texel_pitch<T: Float>(uv: Vec2<T>, size: T, guard: T) -> T {
-    let one = T::lit(1.0);
-    T::lit(4.0) * (one + guard) / (size * (one + uv.dot(uv)))
+    T::lit(4.0) * (T::lit(1.0) + guard) / (size + size * uv.dot(uv))
 }
 
 /// The solid angle in steradians of a texel at disk coordinates uv: the square of its pitch.

@@ -25,25 +25,16 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
         "obj" => obj::read,
         "gltf" | "glb" => gltf::read,
         _ => {
-            return Err(SceneError::UnknownExtension {
-                path: path_buf(),
-                extension,
-            });
+            return Err(SceneError::UnknownExtension { path: path_buf(), extension });
         }
     };
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
-        path: path_buf(),
-        source,
-    })?;
+    let bytes =
+        std::fs::read(path).map_err(|source| SceneError::Read { path: path_buf(), source })?;
     if bytes.is_empty() {
         return Err(SceneError::EmptyFile { path: path_buf() });
     }
     let mut scene = Scene {
-        name: path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into(),
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into(),
         meshes: Vec::new(),
         lights: Vec::new(),
         camera: None,
@@ -54,10 +45,7 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
         .unwrap_or_else(|_| Err(malformed(path, "its offsets or lengths are impossible")))?;
     if scene.triangle_count() == 0 {
         let found = [&[found], &scene.warnings[..]].concat().join("; ");
-        return Err(SceneError::Empty {
-            path: path_buf(),
-            found,
-        });
+        return Err(SceneError::Empty { path: path_buf(), found });
     }
     Ok(scene)
 }
@@ -73,11 +61,7 @@ fn malformed(path: &Path, what: impl ToString) -> SceneError {
 /// Linear RGB from a file, where anything may stand.
 fn albedo(color: [f32; 3]) -> Vec3 {
     let usable = |component: f32| {
-        if component.is_nan() {
-            0.0
-        } else {
-            component.clamp(0.0, 1.0)
-        }
+        if component.is_nan() { 0.0 } else { component.clamp(0.0, 1.0) }
     };
     Vec3::from(color.map(usable))
 }
@@ -171,9 +155,7 @@ impl Draft<'_> {
             ));
         }
         if replaced_normals > 0 {
-            warn(format!(
-                "{replaced_normals} corners have no usable normal and got their face's"
-            ));
+            warn(format!("{replaced_normals} corners have no usable normal and got their face's"));
         }
         (!mesh.triangles.is_empty()).then_some(mesh)
     }
@@ -182,8 +164,7 @@ impl Draft<'_> {
 impl Dropped {
     fn add(&mut self, corners: Triangle, bad: impl Fn(i64) -> bool) {
         let vertices = corners.map(|corner| corner.position);
-        self.vertices
-            .extend(vertices.into_iter().filter(|&i| bad(i)));
+        self.vertices.extend(vertices.into_iter().filter(|&i| bad(i)));
         self.triangles += 1;
     }
 }

@@ -123,9 +123,7 @@ impl Scene {
     /// The corners of every triangle, mesh after mesh.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         self.meshes.iter().flat_map(|mesh| {
-            mesh.triangles
-                .iter()
-                .map(|corners| corners.map(|i| mesh.positions[i as usize]))
+            mesh.triangles.iter().map(|corners| corners.map(|i| mesh.positions[i as usize]))
         })
     }
 }
@@ -203,10 +201,7 @@ pub enum SceneError {
     #[error("walls of {walls} x {walls} quads: use 1 to {}", Options::MAX_WALLS)]
     Walls { walls: u32 },
     #[error("cannot read `{path}`: {source}; check the path and its permissions")]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error("`{path}` is a directory; name a .obj, .gltf or .glb file in it")]
     Directory { path: PathBuf },
     #[error("`{path}` is empty (0 bytes); export it again")]
@@ -218,11 +213,7 @@ pub enum SceneError {
     #[error(
         "`{path}` needs the buffer `{uri}`: {what}; put it where the file expects it, or export a .glb, which holds its buffers"
     )]
-    Buffer {
-        path: PathBuf,
-        uri: String,
-        what: String,
-    },
+    Buffer { path: PathBuf, uri: String, what: String },
     #[error(
         "`{path}` requires the glTF extension `{extension}`, which is not supported; export it without"
     )]

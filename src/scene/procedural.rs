@@ -15,10 +15,7 @@ pub const BUILT_IN: [(&str, &str); 3] = [
         "brabec-ceiling",
         "the same room, hemispherical light under the ceiling (Brabec 2002, figure 4)",
     ),
-    (
-        "cornell",
-        "the Cornell box, omnidirectional light under its ceiling",
-    ),
+    ("cornell", "the Cornell box, omnidirectional light under its ceiling"),
 ];
 
 /// `name` is one of [`BUILT_IN`].
@@ -40,11 +37,7 @@ pub(super) fn build(name: &str, walls: u32) -> Result<Scene, SceneError> {
     Ok(Scene {
         name: name.into(),
         meshes,
-        lights: vec![Light {
-            position,
-            axis,
-            color: Vec3::ONE,
-        }],
+        lights: vec![Light { position, axis, color: Vec3::ONE }],
         camera: Some(camera),
         warnings: Vec::new(),
     })
@@ -66,12 +59,7 @@ fn room_camera() -> Camera {
 /// A closed room, its inside visible, with objects in all directions from its middle.
 fn room(walls: u32) -> Vec<Mesh> {
     let (min, max) = (ROOM_MIN, ROOM_MAX);
-    let base = [
-        (min.x, min.z),
-        (min.x, max.z),
-        (max.x, max.z),
-        (max.x, min.z),
-    ];
+    let base = [(min.x, min.z), (min.x, max.z), (max.x, max.z), (max.x, min.z)];
     let faces = prism(base.map(|(x, z)| vec3(x, min.y, z)), max.y - min.y);
     let plaster = vec3(0.75, 0.73, 0.68);
     let inside = [
@@ -136,18 +124,9 @@ fn cornell(walls: u32) -> Vec<Mesh> {
     let white = vec3(0.75, 0.75, 0.73);
     let red = vec3(0.63, 0.06, 0.05);
     let green = vec3(0.14, 0.45, 0.09);
-    let floor = [
-        [552.8, 0.0, 0.0],
-        [0.0, 0.0, 0.0],
-        [0.0, 0.0, 559.2],
-        [549.6, 0.0, 559.2],
-    ];
-    let ceiling = [
-        [556.0, 548.8, 0.0],
-        [556.0, 548.8, 559.2],
-        [0.0, 548.8, 559.2],
-        [0.0, 548.8, 0.0],
-    ];
+    let floor = [[552.8, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 559.2], [549.6, 0.0, 559.2]];
+    let ceiling =
+        [[556.0, 548.8, 0.0], [556.0, 548.8, 559.2], [0.0, 548.8, 559.2], [0.0, 548.8, 0.0]];
     let back = [floor[3], floor[2], ceiling[2], ceiling[1]];
     let right = [floor[2], floor[1], ceiling[3], ceiling[2]];
     let left = [floor[0], floor[3], ceiling[1], ceiling[0]];
@@ -162,19 +141,10 @@ fn cornell(walls: u32) -> Vec<Mesh> {
         quads("back wall", white, &[metres(back)], walls),
         quads("right wall", green, &[metres(right)], walls),
         quads("left wall", red, &[metres(left)], walls),
-        block(
-            "short block",
-            [[130.0, 65.0], [82.0, 225.0], [240.0, 272.0], [290.0, 114.0]],
-            165.0,
-        ),
+        block("short block", [[130.0, 65.0], [82.0, 225.0], [240.0, 272.0], [290.0, 114.0]], 165.0),
         block(
             "tall block",
-            [
-                [423.0, 247.0],
-                [265.0, 296.0],
-                [314.0, 456.0],
-                [472.0, 406.0],
-            ],
+            [[423.0, 247.0], [265.0, 296.0], [314.0, 456.0], [472.0, 406.0]],
             330.0,
         ),
     ]

@@ -10,25 +10,13 @@ use super::Mesh;
 pub(super) fn prism(base: [Vec3; 4], height: f32) -> [[Vec3; 4]; 6] {
     let [a, b, c, d] = base;
     let [ta, tb, tc, td] = base.map(|corner| corner + Vec3::Y * height);
-    [
-        [ta, tb, tc, td],
-        [d, c, b, a],
-        [a, b, tb, ta],
-        [b, c, tc, tb],
-        [c, d, td, tc],
-        [d, a, ta, td],
-    ]
+    [[ta, tb, tc, td], [d, c, b, a], [a, b, tb, ta], [b, c, tc, tb], [c, d, td, tc], [d, a, ta, td]]
 }
 
 /// A box on the plane y = 0, turned about the y axis by `angle` radians.
 pub(super) fn cuboid(name: &str, albedo: Vec3, size: Vec3, angle: f32) -> Mesh {
     let corner = |x: f32, z: f32| vec3(x * size.x / 2.0, 0.0, z * size.z / 2.0);
-    let base = [
-        corner(-1.0, -1.0),
-        corner(-1.0, 1.0),
-        corner(1.0, 1.0),
-        corner(1.0, -1.0),
-    ];
+    let base = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     quads(name, albedo, &prism(base, size.y), 1).placed(Quat::from_rotation_y(angle), Vec3::ZERO)
 }
 
@@ -47,16 +35,14 @@ pub(super) fn quads(name: &str, albedo: Vec3, quads: &[[Vec3; 4]], cells: u32) -
         let normal = (c - a).cross(d - b).normalize();
         for row in 0..=cells {
             let (from, to) = (between(a, d, row), between(b, c, row));
-            mesh.positions
-                .extend((0..=cells).map(|i| between(from, to, i)));
+            mesh.positions.extend((0..=cells).map(|i| between(from, to, i)));
         }
         mesh.normals.resize(mesh.positions.len(), normal);
         for row in 0..cells {
             for column in 0..cells {
                 let i = first + row * (cells + 1) + column;
                 let above = i + cells + 1;
-                mesh.triangles
-                    .extend([[i, i + 1, above + 1], [i, above + 1, above]]);
+                mesh.triangles.extend([[i, i + 1, above + 1], [i, above + 1, above]]);
             }
         }
     }
@@ -108,10 +94,8 @@ pub(super) fn revolve(name: &str, albedo: Vec3, segments: u32, profile: &[Profil
         vec3(v.x * around.x, v.y, v.x * around.y)
     };
     for &(point, normal) in profile {
-        mesh.positions
-            .extend((0..segments).map(|j| turned(point, j)));
-        mesh.normals
-            .extend((0..segments).map(|j| turned(normal, j).normalize()));
+        mesh.positions.extend((0..segments).map(|j| turned(point, j)));
+        mesh.normals.extend((0..segments).map(|j| turned(normal, j).normalize()));
     }
     for (i, pair) in (0u32..).zip(profile.windows(2)) {
         let [low, high] = [pair[0].0, pair[1].0];
@@ -133,20 +117,12 @@ pub(super) fn revolve(name: &str, albedo: Vec3, segments: u32, profile: &[Profil
 impl Mesh {
     fn named(name: &str, albedo: Vec3) -> Self {
         let (positions, normals, triangles) = Default::default();
-        Self {
-            name: name.into(),
-            positions,
-            normals,
-            triangles,
-            albedo,
-        }
+        Self { name: name.into(), positions, normals, triangles, albedo }
     }
 
     /// Rotates, then moves.
     pub(super) fn placed(mut self, rotation: Quat, to: Vec3) -> Self {
-        self.positions
-            .iter_mut()
-            .for_each(|p| *p = rotation * *p + to);
+        self.positions.iter_mut().for_each(|p| *p = rotation * *p + to);
         self.normals.iter_mut().for_each(|n| *n = rotation * *n);
         self
     }

@@ -13,11 +13,7 @@ impl Scene {
         self.lights.first().copied().unwrap_or_else(|| {
             let bounds = self.bounds();
             let above = bounds.max.y + 0.5 * bounds.extent().max_element();
-            Light {
-                position: bounds.center().with_y(above),
-                axis: None,
-                color: Vec3::ONE,
-            }
+            Light { position: bounds.center().with_y(above), axis: None, color: Vec3::ONE }
         })
     }
 
@@ -33,12 +29,7 @@ impl Scene {
             .then(|| self.interior_view(light))
             .flatten()
             .unwrap_or_else(|| self.exterior_view(light));
-        Camera {
-            eye,
-            target,
-            up: Vec3::Y,
-            vertical_fov: VERTICAL_FOV,
-        }
+        Camera { eye, target, up: Vec3::Y, vertical_fov: VERTICAL_FOV }
     }
 
     /// Eye and target in the open space around the light; `None` if the light touches a surface.

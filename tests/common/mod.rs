@@ -16,10 +16,7 @@ pub const CASES: usize = 200_000;
 
 /// The generator of a named test, the same in every run.
 pub fn rng(name: &str) -> Rng {
-    Rng::with_seed(
-        name.bytes()
-            .fold(7_u64, |seed, byte| seed.wrapping_mul(31) + u64::from(byte)),
-    )
+    Rng::with_seed(name.bytes().fold(7_u64, |seed, byte| seed.wrapping_mul(31) + u64::from(byte)))
 }
 
 /// Uniform in [low, high).
@@ -37,11 +34,7 @@ pub fn spread(rng: &mut Rng, low: i32, high: i32) -> f32 {
 /// A point whose components' magnitudes are log-uniform in [2^low, 2^high]: nearly every
 /// neighbourhood of axes, poles and seam.
 pub fn point(rng: &mut Rng, low: i32, high: i32) -> Vec3<f32> {
-    Vec3::new(
-        spread(rng, low, high),
-        spread(rng, low, high),
-        spread(rng, low, high),
-    )
+    Vec3::new(spread(rng, low, high), spread(rng, low, high), spread(rng, low, high))
 }
 
 /// A unit vector, uniform over the sphere up to rounding.
@@ -101,11 +94,7 @@ pub fn widen_light(light: DpsmLight<f32>) -> DpsmLight<f64> {
 
 /// Cross product.
 pub fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
-    Vec3::new(
-        a.y * b.z - a.z * b.y,
-        a.z * b.x - a.x * b.z,
-        a.x * b.y - a.y * b.x,
-    )
+    Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 }
 
 /// Angle in radians between two directions, accurate also where it is small.
@@ -132,32 +121,21 @@ pub trait Narrow {
 impl Widen for Vec3<f32> {
     type Wide = Vec3<f64>;
     fn widen(self) -> Vec3<f64> {
-        Vec3 {
-            x: self.x.into(),
-            y: self.y.into(),
-            z: self.z.into(),
-        }
+        Vec3 { x: self.x.into(), y: self.y.into(), z: self.z.into() }
     }
 }
 
 impl Narrow for Vec3<f64> {
     type Slim = Vec3<f32>;
     fn narrow(self) -> Vec3<f32> {
-        Vec3 {
-            x: self.x as f32,
-            y: self.y as f32,
-            z: self.z as f32,
-        }
+        Vec3 { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
     }
 }
 
 impl Widen for dpsm::scalar::float::Vec2<f32> {
     type Wide = dpsm::scalar::float::Vec2<f64>;
     fn widen(self) -> Self::Wide {
-        dpsm::scalar::float::Vec2 {
-            x: self.x.into(),
-            y: self.y.into(),
-        }
+        dpsm::scalar::float::Vec2 { x: self.x.into(), y: self.y.into() }
     }
 }
 
@@ -171,30 +149,15 @@ pub struct Worst {
 impl Worst {
     /// Notes one error beside its bound.
     pub fn note(&mut self, error: f64, bound: f64, input: impl std::fmt::Debug) {
-        let ratio = if error.is_nan() {
-            f64::INFINITY
-        } else {
-            error / bound
-        };
+        let ratio = if error.is_nan() { f64::INFINITY } else { error / bound };
         if error != 0.0 && ratio > self.ratio {
-            *self = Self {
-                ratio,
-                input: format!("{input:?}: error {error:e}, bound {bound:e}"),
-            };
+            *self = Self { ratio, input: format!("{input:?}: error {error:e}, bound {bound:e}") };
         }
     }
 
     /// Fails where an error was above its bound.
     pub fn check(self, name: &str) {
-        println!(
-            "{name}: at most {:.3} of the bound, at {}",
-            self.ratio, self.input
-        );
-        assert!(
-            self.ratio <= 1.0,
-            "{name}: {:.3} of the bound at {}",
-            self.ratio,
-            self.input
-        );
+        println!("{name}: at most {:.3} of the bound, at {}", self.ratio, self.input);
+        assert!(self.ratio <= 1.0, "{name}: {:.3} of the bound at {}", self.ratio, self.input);
     }
 }

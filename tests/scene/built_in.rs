@@ -33,10 +33,7 @@ fn closed_room_is_watertight_and_faces_inward() {
             assert_eq!(room.len(), 6);
             assert!(is_watertight(room.iter().copied()), "{name}, walls {walls}");
             let inside = -scene.bounds().extent().element_product();
-            assert!(
-                (volume(room) as f32 / inside - 1.0).abs() < 1e-5,
-                "{name}, walls {walls}"
-            );
+            assert!((volume(room) as f32 / inside - 1.0).abs() < 1e-5, "{name}, walls {walls}");
         }
     }
 }
@@ -57,12 +54,7 @@ fn objects_are_watertight_solids_that_face_outward_and_keep_apart() {
         for other in &objects[i + 1..] {
             let into =
                 |from: &Mesh, to: &Mesh| to.positions.iter().any(|p| enclosures(from, *p) != 0);
-            assert!(
-                !into(one, other) && !into(other, one),
-                "{} and {}",
-                one.name,
-                other.name
-            );
+            assert!(!into(one, other) && !into(other, one), "{} and {}", one.name, other.name);
         }
     }
 }
@@ -72,11 +64,7 @@ fn normals_are_unit_and_agree_with_the_winding() {
     for scene in every_built_in() {
         for mesh in &scene.meshes {
             assert_eq!(mesh.normals.len(), mesh.positions.len());
-            assert!(
-                mesh.normals
-                    .iter()
-                    .all(|normal| (normal.length() - 1.0).abs() < 1e-6)
-            );
+            assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < 1e-6));
             for (triangle, [a, b, c]) in mesh.triangles.iter().zip(corners(mesh)) {
                 let face = (b - a).cross(c - a);
                 assert!(face.length() > 0.0, "{}", mesh.name);
@@ -108,11 +96,8 @@ fn lights_are_the_papers_and_both_hemispheres_see_casters() {
     assert_eq!((light.position, light.axis), (room.bounds().center(), None));
     for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
         for side in [axis, -axis] {
-            let on_side = |mesh: &&Mesh| {
-                mesh.positions
-                    .iter()
-                    .all(|p| (*p - light.position).dot(side) > 0.0)
-            };
+            let on_side =
+                |mesh: &&Mesh| mesh.positions.iter().all(|p| (*p - light.position).dot(side) > 0.0);
             let objects = room.meshes.iter().filter(|mesh| !is_wall(mesh));
             assert!(objects.filter(on_side).count() >= 2, "{side}");
         }
@@ -151,11 +136,7 @@ fn built_in_cameras_show_floor_walls_objects_and_shadows() {
         assert_eq!(count("floor"), 1, "{}", scene.name);
         assert!(count("wall") >= 2, "{}: {seen:?}", scene.name);
         assert!(seen.len() >= 2 + 1 + 2, "{}: {seen:?}", scene.name);
-        assert!(
-            shadowed * 50 > SIDE * SIDE,
-            "{}: {shadowed} pixels",
-            scene.name
-        );
+        assert!(shadowed * 50 > SIDE * SIDE, "{}: {shadowed} pixels", scene.name);
     }
 }
 
@@ -164,18 +145,13 @@ fn names_with_typing_errors_get_a_suggestion() {
     let message = |name| open(name, &Options::default()).unwrap_err().to_string();
     let help = "(built in: brabec-room, brabec-ceiling, cornell; \
                 or give the path of a .obj, .gltf or .glb file)";
-    for (typed, meant) in [
-        ("brabec-rom", "brabec-room"),
-        ("brabec-c", "brabec-ceiling"),
-        ("Cornel", "cornell"),
-    ] {
+    for (typed, meant) in
+        [("brabec-rom", "brabec-room"), ("brabec-c", "brabec-ceiling"), ("Cornel", "cornell")]
+    {
         let expected = format!("no scene is called `{typed}`; did you mean `{meant}`? {help}");
         assert_eq!(message(typed), expected);
     }
-    assert_eq!(
-        message("teapot"),
-        format!("no scene is called `teapot` {help}")
-    );
+    assert_eq!(message("teapot"), format!("no scene is called `teapot` {help}"));
     assert_eq!(message(""), format!("no scene is called `` {help}"));
 }
 
@@ -184,9 +160,6 @@ fn impossible_walls_are_an_error() {
     for walls in [0, Options::MAX_WALLS + 1] {
         let error = open("cornell", &Options { walls }).unwrap_err();
         assert!(matches!(error, SceneError::Walls { .. }));
-        assert_eq!(
-            error.to_string(),
-            format!("walls of {walls} x {walls} quads: use 1 to 1024")
-        );
+        assert_eq!(error.to_string(), format!("walls of {walls} x {walls} quads: use 1 to 1024"));
     }
 }

@@ -10,26 +10,14 @@ fn text_file_reads_its_buffer_from_beside_it() {
         let member = format!(r#"{{"uri": "{uri}", "byteLength": 164}}"#);
         json(STRIP, NODE, "").replace(r#"{"byteLength": 164}"#, &member)
     };
-    assert_eq!(
-        read(&file("external.gltf", with_uri("square.bin"))).triangle_count(),
-        2
-    );
+    assert_eq!(read(&file("external.gltf", with_uri("square.bin"))).triangle_count(), 2);
 
     let missing = error(&file("missing.gltf", with_uri("gone.bin")));
-    assert!(
-        missing.starts_with("`missing.gltf` needs the buffer `gone.bin`: "),
-        "{missing}"
-    );
-    assert!(
-        missing.ends_with("or export a .glb, which holds its buffers"),
-        "{missing}"
-    );
+    assert!(missing.starts_with("`missing.gltf` needs the buffer `gone.bin`: "), "{missing}");
+    assert!(missing.ends_with("or export a .glb, which holds its buffers"), "{missing}");
     file("short.bin", &buffer()[..40]);
     let short = error(&file("short.gltf", with_uri("short.bin")));
-    assert!(
-        short.contains("`short.bin`: it has 40 bytes of 164; "),
-        "{short}"
-    );
+    assert!(short.contains("`short.bin`: it has 40 bytes of 164; "), "{short}");
     let odd = error(&file("odd.gltf", with_uri("%ff.bin")));
     assert!(odd.contains("impossible"), "{odd}");
 }
@@ -63,26 +51,13 @@ fn broken_files_are_errors_that_name_the_fault() {
             r#"5126, "count": 0"#,
             "`x`: its positions have the length 0",
         ),
-        (
-            "view.glb",
-            r#"{"bufferView": 0, "#,
-            "{",
-            "accessors[0].bufferView: Missing data",
-        ),
-        (
-            "node.glb",
-            r#""nodes": [0]"#,
-            r#""nodes": [7]"#,
-            "scenes[0].nodes[0]",
-        ),
+        ("view.glb", r#"{"bufferView": 0, "#, "{", "accessors[0].bufferView: Missing data"),
+        ("node.glb", r#""nodes": [0]"#, r#""nodes": [7]"#, "scenes[0].nodes[0]"),
     ] {
         let broken = json(STRIP, NODE, "").replacen(from, to, 1);
         let message = error(&file(name, glb(&broken)));
         assert!(message.contains(what), "{message}");
-        assert!(
-            message.ends_with("; export it again, or check it with a validator"),
-            "{message}"
-        );
+        assert!(message.ends_with("; export it again, or check it with a validator"), "{message}");
     }
     let empty = error(&file("no_mesh.glb", glb(&json(STRIP, "{}", ""))));
     assert_eq!(
@@ -97,10 +72,7 @@ fn every_truncation_is_an_error() {
     let whole = glb(&json(STRIP, NODE, ""));
     for length in 1..whole.len() {
         let message = error(&file("truncated.glb", &whole[..length]));
-        assert!(
-            message.starts_with("`truncated.glb`: "),
-            "{length}: {message}"
-        );
+        assert!(message.starts_with("`truncated.glb`: "), "{length}: {message}");
     }
 }
 

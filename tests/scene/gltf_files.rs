@@ -24,32 +24,14 @@ pub(crate) fn glb(json: &str) -> Vec<u8> {
 }
 
 pub(crate) fn buffer() -> Vec<u8> {
-    let square = [
-        [0.0f32, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [0.0, 1.0, 0.0],
-    ];
-    let normals = [
-        [0.0f32, 0.0, 2.0],
-        [0.0, 0.0, 0.0],
-        [0.0, 0.6, 0.8],
-        [f32::NAN, 0.0, 0.0],
-    ];
-    let broken = [
-        [0.0f32, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [f32::INFINITY, 0.0, 0.0],
-    ];
+    let square = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let normals = [[0.0f32, 0.0, 2.0], [0.0, 0.0, 0.0], [0.0, 0.6, 0.8], [f32::NAN, 0.0, 0.0]];
+    let broken = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [f32::INFINITY, 0.0, 0.0]];
     let floats = [square, normals, broken].into_iter().flatten().flatten();
     let strip = [0u16, 1, 3, 2];
     let list = [0u16, 1, 2, 0, 2, 9];
     let indices = strip.into_iter().chain(list);
-    floats
-        .flat_map(f32::to_le_bytes)
-        .chain(indices.flat_map(u16::to_le_bytes))
-        .collect()
+    floats.flat_map(f32::to_le_bytes).chain(indices.flat_map(u16::to_le_bytes)).collect()
 }
 
 /// 0: a square's corners; 1: normals, the second and fourth unusable; 2: positions, the fourth
@@ -86,17 +68,10 @@ fn lists_strips_and_fans_become_triangles_and_the_rest_is_counted() {
     );
     let scene = read(&file("modes.glb", glb(&json(&primitives, NODE, ""))));
     assert_valid(&scene);
-    let counts: Vec<_> = scene
-        .meshes
-        .iter()
-        .map(|m| (m.name.as_str(), m.triangles.len()))
-        .collect();
+    let counts: Vec<_> =
+        scene.meshes.iter().map(|m| (m.name.as_str(), m.triangles.len())).collect();
     assert_eq!(counts, [("x/0", 2), ("x/1", 2), ("x/2", 1)]);
-    assert!(
-        scene
-            .triangles()
-            .all(|[a, b, c]| (b - a).cross(c - a) == Vec3::Z)
-    );
+    assert!(scene.triangles().all(|[a, b, c]| (b - a).cross(c - a) == Vec3::Z));
     assert_eq!(
         scene.warnings,
         [
@@ -112,10 +87,7 @@ fn unusable_vertices_and_normals_are_counted_and_named() {
     let scene = read(&file("nan.glb", glb(&json(primitives, NODE, ""))));
     assert_valid(&scene);
     assert_eq!(scene.triangle_count(), 1);
-    assert_eq!(
-        scene.warnings,
-        ["mesh `x`: 1 non-finite vertices (first: 3), 1 triangles dropped"]
-    );
+    assert_eq!(scene.warnings, ["mesh `x`: 1 non-finite vertices (first: 3), 1 triangles dropped"]);
 }
 
 #[test]
@@ -138,10 +110,7 @@ fn sparse_positions_are_read_and_need_a_base() {
         1,
     );
     let message = error(&file("claimed.glb", glb(&claimed)));
-    assert!(
-        message.contains("mesh `x`: its positions have no buffer view"),
-        "{message}"
-    );
+    assert!(message.contains("mesh `x`: its positions have no buffer view"), "{message}");
 }
 
 #[test]
@@ -149,16 +118,9 @@ fn given_normals_are_normalised_and_unusable_ones_are_the_faces() {
     let primitives = r#"{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 3, "mode": 5}"#;
     let scene = read(&file("normals.glb", glb(&json(primitives, NODE, ""))));
     assert_valid(&scene);
-    assert_eq!(
-        scene.warnings,
-        ["mesh `x`: 4 corners have no usable normal and got their face's"]
-    );
+    assert_eq!(scene.warnings, ["mesh `x`: 4 corners have no usable normal and got their face's"]);
     let mesh = &scene.meshes[0];
-    assert!(
-        mesh.normals
-            .iter()
-            .any(|normal| normal.distance(vec3(0.0, 0.6, 0.8)) < 1e-6)
-    );
+    assert!(mesh.normals.iter().any(|normal| normal.distance(vec3(0.0, 0.6, 0.8)) < 1e-6));
 }
 
 #[test]
@@ -170,17 +132,10 @@ fn node_transforms_apply_and_mirroring_keeps_the_visible_side() {
         r#", "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]}}]"#;
     let scene = read(&file("mirror.glb", glb(&json(primitives, nodes, more))));
     let bounds = scene.bounds();
-    assert_eq!(
-        (bounds.min, bounds.max),
-        (vec3(-1.0, 0.0, 5.0), vec3(1.0, 1.0, 5.0))
-    );
+    assert_eq!((bounds.min, bounds.max), (vec3(-1.0, 0.0, 5.0), vec3(1.0, 1.0, 5.0)));
     let mesh = &scene.meshes[0];
     assert_eq!(mesh.albedo, vec3(0.5, 0.25, 1.0));
-    assert!(
-        scene
-            .triangles()
-            .all(|[a, b, c]| (b - a).cross(c - a).z > 0.0)
-    );
+    assert!(scene.triangles().all(|[a, b, c]| (b - a).cross(c - a).z > 0.0));
     assert!(mesh.normals.iter().all(|normal| normal.z > 0.0));
 }
 
@@ -201,11 +156,7 @@ fn point_lights_are_omnidirectional_and_spots_hemispherical() {
         {"type": "directional"}, {"type": "point", "color": [0, 0, 0]}]}}"#;
     let scene = read(&file("lights.glb", glb(&json(STRIP, &nodes, more))));
     assert_valid(&scene);
-    let point = Light {
-        position: vec3(1.0, 2.0, 3.0),
-        axis: None,
-        color: vec3(1.0, 0.5, 0.0),
-    };
+    let point = Light { position: vec3(1.0, 2.0, 3.0), axis: None, color: vec3(1.0, 0.5, 0.0) };
     assert_eq!(scene.lights.len(), 2);
     assert_eq!(scene.lights[0], point);
     assert_eq!(scene.default_light(), point);
@@ -229,15 +180,9 @@ fn first_perspective_camera_is_used() {
         {"type": "perspective", "perspective": {"yfov": 0.75, "znear": 1}}]"#;
     let scene = read(&file("camera.glb", glb(&json(STRIP, nodes, more))));
     let camera = scene.camera.unwrap();
-    assert_eq!(
-        (camera.eye, camera.target),
-        (vec3(0.0, 0.0, 4.0), vec3(0.0, 0.0, 3.0))
-    );
+    assert_eq!((camera.eye, camera.target), (vec3(0.0, 0.0, 4.0), vec3(0.0, 0.0, 3.0)));
     assert_eq!((camera.up, camera.vertical_fov), (Vec3::Y, 0.75));
-    assert_eq!(
-        scene.warnings,
-        ["a camera without a usable perspective was skipped"]
-    );
+    assert_eq!(scene.warnings, ["a camera without a usable perspective was skipped"]);
 }
 
 #[test]

@@ -21,15 +21,11 @@ fn every_built_in() -> impl Iterator<Item = Scene> {
 }
 
 fn is_wall(mesh: &Mesh) -> bool {
-    ["wall", "floor", "ceiling"]
-        .iter()
-        .any(|part| mesh.name.contains(part))
+    ["wall", "floor", "ceiling"].iter().any(|part| mesh.name.contains(part))
 }
 
 fn corners(mesh: &Mesh) -> impl Iterator<Item = [Vec3; 3]> {
-    mesh.triangles
-        .iter()
-        .map(|t| t.map(|i| mesh.positions[i as usize]))
+    mesh.triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize]))
 }
 
 /// How often each directed edge occurs, vertices with equal positions being one.
@@ -48,18 +44,13 @@ fn edges<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> HashMap<[[u32; 3]; 2
 /// Every edge belongs to two triangles that wind the same way.
 fn is_watertight<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> bool {
     let edges = edges(meshes);
-    edges
-        .iter()
-        .all(|([from, to], count)| *count == 1 && edges.contains_key(&[*to, *from]))
+    edges.iter().all(|([from, to], count)| *count == 1 && edges.contains_key(&[*to, *from]))
 }
 
 /// Positive when the triangles face outward.
 fn volume<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> f64 {
     let triangles = meshes.into_iter().flat_map(corners);
-    triangles
-        .map(|t| t.map(Vec3::as_dvec3))
-        .map(|[a, b, c]| a.cross(b).dot(c) / 6.0)
-        .sum()
+    triangles.map(|t| t.map(Vec3::as_dvec3)).map(|[a, b, c]| a.cross(b).dot(c) / 6.0).sum()
 }
 
 /// How often a closed mesh encloses a point: the solid angle it covers over the sphere's
@@ -67,10 +58,7 @@ fn volume<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> f64 {
 fn enclosures(mesh: &Mesh, point: Vec3) -> i32 {
     let solid_angle = |triangle: [Vec3; 3]| {
         let [a, b, c] = triangle.map(|corner| (corner - point).as_dvec3().normalize());
-        2.0 * a
-            .cross(b)
-            .dot(c)
-            .atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+        2.0 * a.cross(b).dot(c).atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
     };
     let sum: f64 = corners(mesh).map(solid_angle).sum();
     (sum / (4.0 * std::f64::consts::PI)).round() as i32
@@ -113,9 +101,7 @@ fn read(path: &Path) -> Scene {
 
 /// The error's text, with the file's path shortened to its name.
 fn error(path: &Path) -> String {
-    let error = open(path.to_str().unwrap(), &Options::default())
-        .unwrap_err()
-        .to_string();
+    let error = open(path.to_str().unwrap(), &Options::default()).unwrap_err().to_string();
     let name = path.file_name().unwrap().to_str().unwrap();
     assert!(error.contains(path.to_str().unwrap()), "{error}");
     error.replace(path.to_str().unwrap(), name)
@@ -123,9 +109,7 @@ fn error(path: &Path) -> String {
 
 /// A mesh made by others, if this checkout lies beside some.
 fn shared(name: &str) -> Option<Scene> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../shared/scenes")
-        .join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes").join(name);
     if !path.exists() {
         println!("skipped: no file {}", path.display());
         return None;
@@ -139,17 +123,8 @@ fn assert_valid(scene: &Scene) {
     for mesh in &scene.meshes {
         assert_eq!(mesh.positions.len(), mesh.normals.len());
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
-        assert!(
-            mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6),
-            "{}",
-            mesh.name
-        );
-        assert!(
-            mesh.triangles
-                .iter()
-                .flatten()
-                .all(|&i| (i as usize) < mesh.positions.len())
-        );
+        assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6), "{}", mesh.name);
+        assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
         assert!(mesh.albedo.cmpge(Vec3::ZERO).all() && mesh.albedo.cmple(Vec3::ONE).all());
     }
     for light in &scene.lights {

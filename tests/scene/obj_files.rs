@@ -14,10 +14,7 @@ fn groups_and_materials_are_meshes_with_their_diffuse_colour() {
     file("materials.mtl", materials);
     let faces = "o left\nusemtl red\nf 1 2 3\nusemtl grey\nf 1 3 4\nusemtl red\nf 4 3 1\n\
                  g right\nf 1 2 4\nusemtl odd\nf 1 2 4\nusemtl none\nf 1 2 4\n";
-    let scene = read(&file(
-        "groups.obj",
-        format!("mtllib materials.mtl\n{SQUARE}{faces}"),
-    ));
+    let scene = read(&file("groups.obj", format!("mtllib materials.mtl\n{SQUARE}{faces}")));
     let found: Vec<_> = scene
         .meshes
         .iter()
@@ -41,16 +38,10 @@ fn groups_and_materials_are_meshes_with_their_diffuse_colour() {
 
 #[test]
 fn missing_material_library_is_only_a_warning() {
-    let scene = read(&file(
-        "no_mtl.obj",
-        format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n"),
-    ));
+    let scene = read(&file("no_mtl.obj", format!("mtllib gone.mtl\n{SQUARE}f 1 2 3\n")));
     assert_eq!(scene.warnings.len(), 1);
     let warning = &scene.warnings[0];
-    assert!(
-        warning.starts_with("material library `gone.mtl` cannot be read ("),
-        "{warning}"
-    );
+    assert!(warning.starts_with("material library `gone.mtl` cannot be read ("), "{warning}");
     assert!(warning.ends_with("): its materials are grey"), "{warning}");
 }
 
@@ -60,11 +51,7 @@ fn missing_normals_are_the_faces_and_given_ones_are_kept_and_normalised() {
     let mesh = &read(&file("normals.obj", text)).meshes[0];
     let normals = |i: usize| mesh.triangles[i].map(|i| mesh.normals[i as usize]);
     assert_eq!(normals(0), [Vec3::Z; 3]);
-    assert!(
-        normals(1)
-            .iter()
-            .all(|normal| normal.distance(vec3(0.0, 0.6, 0.8)) < 1e-6)
-    );
+    assert!(normals(1).iter().all(|normal| normal.distance(vec3(0.0, 0.6, 0.8)) < 1e-6));
 }
 
 #[test]
@@ -76,14 +63,7 @@ fn relative_indices_continued_lines_and_foreign_encodings_are_read() {
     let scene = read(&file("odd.obj", &bytes));
     assert_eq!(scene.triangle_count(), 2);
     let first = scene.triangles().next().unwrap();
-    assert_eq!(
-        first,
-        [
-            vec3(0.0, 0.0, 0.0),
-            vec3(1.0, 0.0, 0.0),
-            vec3(1.0, 1.0, 0.0)
-        ]
-    );
+    assert_eq!(first, [vec3(0.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(1.0, 1.0, 0.0)]);
 }
 
 #[test]
@@ -104,36 +84,21 @@ fn concave_polygons_are_covered_once() {
         (0, 3),
     ];
     let corners: String = comb.iter().map(|(x, z)| format!("v {x} 0 {z}\n")).collect();
-    let scene = read(&file(
-        "comb.obj",
-        format!("{corners}f 1 2 3 4 5 6 7 8 9 10 11 12\n"),
-    ));
+    let scene = read(&file("comb.obj", format!("{corners}f 1 2 3 4 5 6 7 8 9 10 11 12\n")));
     assert_eq!(scene.warnings, [""; 0]);
     assert_eq!(scene.triangle_count(), comb.len() - 2);
-    let area: f32 = scene
-        .triangles()
-        .map(|[a, b, c]| (b - a).cross(c - a).y / -2.0)
-        .sum();
-    let size: f32 = scene
-        .triangles()
-        .map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0)
-        .sum();
+    let area: f32 = scene.triangles().map(|[a, b, c]| (b - a).cross(c - a).y / -2.0).sum();
+    let size: f32 = scene.triangles().map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum();
     assert_eq!((area, size), (5.0 * 3.0 - 2.0 * 2.0, 11.0));
 
     let bow = read(&file("bow.obj", format!("{SQUARE}f 1 2 4 3\n")));
-    assert_eq!(
-        bow.warnings,
-        ["1 polygons cross themselves and may be covered wrongly"]
-    );
+    assert_eq!(bow.warnings, ["1 polygons cross themselves and may be covered wrongly"]);
     assert_eq!(bow.triangle_count(), 2);
 }
 
 #[test]
 fn lines_and_points_are_counted_and_never_become_triangles() {
-    let scene = read(&file(
-        "lines.obj",
-        format!("{SQUARE}l 1 2 3\np 1 2 3\nf 1 2\nf 1 2 3\n"),
-    ));
+    let scene = read(&file("lines.obj", format!("{SQUARE}l 1 2 3\np 1 2 3\nf 1 2\nf 1 2 3\n")));
     assert_eq!(scene.triangle_count(), 1);
     let warning = "3 points, lines or faces of fewer than three corners skipped";
     assert_eq!(scene.warnings, [warning]);
@@ -166,12 +131,9 @@ fn triangles_without_area_keep_a_unit_normal() {
 
 #[test]
 fn lines_that_cannot_be_read_are_shown() {
-    for (line, name) in [
-        ("v 1 2", "a.obj"),
-        ("f 1 x 2", "b.obj"),
-        ("vn 1 , 2", "c.obj"),
-        ("f 1/", "d.obj"),
-    ] {
+    for (line, name) in
+        [("v 1 2", "a.obj"), ("f 1 x 2", "b.obj"), ("vn 1 , 2", "c.obj"), ("f 1/", "d.obj")]
+    {
         let path = file(name, format!("{SQUARE}{line}\nf 1 2 3\n"));
         if name == "d.obj" {
             // An empty field is only an absent one.
@@ -208,20 +170,11 @@ fn files_without_triangles_say_what_was_found() {
 
 #[test]
 fn paths_that_are_no_scene_files_are_errors_with_a_remedy() {
-    assert_eq!(
-        error(&file("empty.obj", "")),
-        "`empty.obj` is empty (0 bytes); export it again"
-    );
+    assert_eq!(error(&file("empty.obj", "")), "`empty.obj` is empty (0 bytes); export it again");
     let unknown = error(&file("scene.FBX", "x"));
-    assert_eq!(
-        unknown,
-        "`scene.FBX`: unknown extension `fbx`; convert it to .glb, .gltf or .obj"
-    );
+    assert_eq!(unknown, "`scene.FBX`: unknown extension `fbx`; convert it to .glb, .gltf or .obj");
     let none = error(&file("scene", "x"));
-    assert_eq!(
-        none,
-        "`scene`: unknown extension ``; convert it to .glb, .gltf or .obj"
-    );
+    assert_eq!(none, "`scene`: unknown extension ``; convert it to .glb, .gltf or .obj");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("folder.obj");
     std::fs::create_dir_all(&folder).unwrap();
     assert_eq!(
@@ -230,10 +183,7 @@ fn paths_that_are_no_scene_files_are_errors_with_a_remedy() {
     );
     let missing = error(Path::new("no/such/file.glb"));
     assert!(missing.starts_with("cannot read `file.glb`: "), "{missing}");
-    assert!(
-        missing.ends_with("; check the path and its permissions"),
-        "{missing}"
-    );
+    assert!(missing.ends_with("; check the path and its permissions"), "{missing}");
 }
 
 #[test]

@@ -12,10 +12,7 @@ fn default_light_stands_above_the_geometry_or_is_the_scenes_first() {
     assert_eq!(scene.default_light(), scene.lights[0]);
     scene.lights.clear();
     // The room is 8 m long and 4 m high.
-    assert_eq!(
-        scene.default_light().position,
-        vec3(0.0, 4.0 + 8.0 / 2.0, 0.0)
-    );
+    assert_eq!(scene.default_light().position, vec3(0.0, 4.0 + 8.0 / 2.0, 0.0));
     assert_eq!(scene.default_light().axis, None);
 }
 
@@ -44,22 +41,14 @@ fn default_camera_inside_stands_free_and_sees_the_light() {
         let camera = scene.default_camera(light);
         assert!(scene.bounds().contains(camera.eye), "{}", scene.name);
         assert!(camera.eye.distance(light) > 0.2 * scene.bounds().extent().max_element());
-        assert!(
-            free_ahead(&scene, &camera) > free,
-            "{}: {camera:?}",
-            scene.name
-        );
+        assert!(free_ahead(&scene, &camera) > free, "{}: {camera:?}", scene.name);
         let to_light = hit(&scene, camera.eye, light - camera.eye, 0.0);
         assert!(to_light.is_none_or(|(t, _)| t > 1.0), "{}", scene.name);
         // Nothing right beside the eye either: the view is no crack between two surfaces.
         let right = (camera.target - camera.eye).cross(camera.up).normalize();
         for side in [right, -right, camera.up] {
             let wall = hit(&scene, camera.eye, side, 0.0);
-            assert!(
-                wall.is_none_or(|(metres, _)| metres > 0.3),
-                "{}",
-                scene.name
-            );
+            assert!(wall.is_none_or(|(metres, _)| metres > 0.3), "{}", scene.name);
         }
         assert!(camera.vertical_fov > 0.0 && camera.vertical_fov < PI);
     }

@@ -6,13 +6,9 @@ impl Parser {
     /// Index of the first comment of those that stand above a token with no blank line between.
     pub(super) fn leading_comments(&self, token: usize) -> usize {
         let source = &self.file.source;
-        let before = token
-            .checked_sub(1)
-            .map(|token| self.tokens[token].span.end);
+        let before = token.checked_sub(1).map(|token| self.tokens[token].span.end);
         let mut below = self.offset(token);
-        let mut index = self
-            .comments
-            .partition_point(|comment| comment.start < below);
+        let mut index = self.comments.partition_point(|comment| comment.start < below);
         while let Some(comment) = index.checked_sub(1).map(|index| &self.comments[index]) {
             let trails = before.is_some_and(|end| {
                 comment.start < end || source.breaks_between(end, comment.start) == 0
@@ -46,11 +42,7 @@ impl Parser {
                 lines.push(line.strip_prefix(' ').unwrap_or(line).trim_end());
             } else if let Some(block) = text.strip_prefix("/**") {
                 let block = block.strip_suffix("*/").unwrap_or(block);
-                lines.extend(
-                    block
-                        .lines()
-                        .map(|line| line.trim().trim_start_matches("* ")),
-                );
+                lines.extend(block.lines().map(|line| line.trim().trim_start_matches("* ")));
             }
         }
         lines.join("\n").trim().to_owned()
@@ -64,9 +56,7 @@ impl Parser {
                 && self.file.directives.first().map(|(_, span)| span.start) != Some(first);
             end = match declares {
                 true => self.leading_comments(0),
-                false => self
-                    .comments
-                    .partition_point(|comment| comment.start < first),
+                false => self.comments.partition_point(|comment| comment.start < first),
             };
         }
         let Some(last) = end.checked_sub(1) else {

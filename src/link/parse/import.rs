@@ -63,11 +63,7 @@ impl Parser {
 
     pub(super) fn instead(&self, at: usize, what: &'static str, module: &str) -> LinkError {
         let module = if is_word(module) { module } else { "module" };
-        let root = if self.file.module.is_some() {
-            "super"
-        } else {
-            "dpsm"
-        };
+        let root = if self.file.module.is_some() { "super" } else { "dpsm" };
         LinkError::UnsupportedImport {
             place: self.file.source.place(self.offset(at)),
             what,
@@ -78,11 +74,8 @@ impl Parser {
 
 /// Words with commas between, and perhaps one at the end.
 fn is_list(words: &[&str]) -> bool {
-    words
-        .iter()
-        .enumerate()
-        .all(|(index, word)| match index % 2 {
-            0 => is_word(word),
-            _ => *word == ",",
-        })
+    words.iter().enumerate().all(|(index, word)| match index % 2 {
+        0 => is_word(word),
+        _ => *word == ",",
+    })
 }

@@ -11,11 +11,7 @@ impl Parser {
     pub(super) fn item(&mut self, first: usize) -> Result<usize, LinkError> {
         let mut at = first;
         while self.text(at) == "@" {
-            at += if self.text(at + 2) == "(" {
-                self.pairs[at + 2] - at + 1
-            } else {
-                2
-            };
+            at += if self.text(at + 2) == "(" { self.pairs[at + 2] - at + 1 } else { 2 };
         }
         let Some(kind) = DECLARATIONS.into_iter().find(|kind| *kind == self.text(at)) else {
             let what = match self.text(at) {
@@ -26,11 +22,7 @@ impl Parser {
         };
         let mut name = at;
         if kind != "const_assert" {
-            name = if kind == "var" {
-                self.after_template(at + 1)
-            } else {
-                at + 1
-            };
+            name = if kind == "var" { self.after_template(at + 1) } else { at + 1 };
             if !self.is_word(name) {
                 return Err(self.malformed(at, format!("expected a name after `{kind}`")));
             }
@@ -46,10 +38,7 @@ impl Parser {
             }
             "fn" | "struct" => {
                 let bracket = if kind == "fn" { "(" } else { "{" };
-                let what = format!(
-                    "expected `{bracket}` after `{kind} {}`",
-                    clip(self.text(name))
-                );
+                let what = format!("expected `{bracket}` after `{kind} {}`", clip(self.text(name)));
                 return Err(self.malformed(name, what));
             }
             _ => (0..0, self.statement_end(at + 1)?),
@@ -64,9 +53,8 @@ impl Parser {
             span: self
                 .comments
                 .get(start)
-                .map_or(self.offset(first), |comment| {
-                    comment.start.min(self.offset(first))
-                })..self.end_of_line_comment(self.tokens[last].span.end),
+                .map_or(self.offset(first), |comment| comment.start.min(self.offset(first)))
+                ..self.end_of_line_comment(self.tokens[last].span.end),
             doc: self.doc(start, self.offset(first)),
             words,
             locals,

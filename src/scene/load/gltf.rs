@@ -21,14 +21,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
             .iter()
             .any(|appearance| extension.starts_with(appearance))
         {
-            scene
-                .warnings
-                .push(format!("extension `{extension}` ignored"));
+            scene.warnings.push(format!("extension `{extension}` ignored"));
         } else if extension != "KHR_lights_punctual" {
-            return Err(SceneError::RequiredExtension {
-                path: path.into(),
-                extension,
-            });
+            return Err(SceneError::RequiredExtension { path: path.into(), extension });
         }
     }
     // The crate's validation refuses attributes that it does not know, which the format allows.
@@ -47,28 +42,17 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
         dark: 0,
     };
     reader.nodes(&document)?;
-    let Reader {
-        mesh_nodes,
-        not_triangles,
-        directional,
-        dark,
-        ..
-    } = reader;
+    let Reader { mesh_nodes, not_triangles, directional, dark, .. } = reader;
     let mut counted = |count: usize, what: &str| {
         if count > 0 {
             scene.warnings.push(format!("{count} {what}"));
         }
     };
     counted(not_triangles, "point or line primitives skipped");
-    counted(
-        directional,
-        "directional lights skipped: they have no position",
-    );
+    counted(directional, "directional lights skipped: they have no position");
     counted(dark, "lights without colour, position or direction skipped");
     let meshes = document.meshes().len();
-    Ok(format!(
-        "{meshes} meshes and {mesh_nodes} nodes that use one"
-    ))
+    Ok(format!("{meshes} meshes and {mesh_nodes} nodes that use one"))
 }
 
 /// Every buffer's bytes, from the file itself, a data URI or another file.
@@ -86,11 +70,8 @@ fn buffers(
                 buffer::Source::Uri(uri) if uri.starts_with("data:") => "data URI",
                 buffer::Source::Uri(uri) => uri,
             };
-            let error = |what: String| SceneError::Buffer {
-                path: path.into(),
-                uri: uri.into(),
-                what,
-            };
+            let error =
+                |what: String| SceneError::Buffer { path: path.into(), uri: uri.into(), what };
             let data = buffer::Data::from_source_and_blob(buffer.source(), folder, &mut blob)
                 .map_err(|e| error(e.to_string()))?;
             if data.len() < buffer.length() {
@@ -121,17 +102,11 @@ impl Reader<'_> {
             for child in document.nodes().flat_map(|node| node.children()) {
                 is_root[child.index()] = false;
             }
-            roots = document
-                .nodes()
-                .filter(|node| is_root[node.index()])
-                .collect();
+            roots = document.nodes().filter(|node| is_root[node.index()]).collect();
         }
         // A stack, not recursion, and a mark: the file may be deep, or cyclic against the rules.
-        let mut stack: Vec<(Node, Mat4)> = roots
-            .into_iter()
-            .rev()
-            .map(|node| (node, Mat4::IDENTITY))
-            .collect();
+        let mut stack: Vec<(Node, Mat4)> =
+            roots.into_iter().rev().map(|node| (node, Mat4::IDENTITY)).collect();
         let mut seen = vec![false; document.nodes().len()];
         while let Some((node, parent)) = stack.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
@@ -223,10 +198,5 @@ fn camera(
     let (target, vertical_fov) = (eye + forward?, lens.yfov());
     // So far from the origin that a metre is lost, the target would be the eye.
     let usable = target.is_finite() && target != eye && vertical_fov > 0.0 && vertical_fov < PI;
-    usable.then_some(Camera {
-        eye,
-        target,
-        up: up?,
-        vertical_fov,
-    })
+    usable.then_some(Camera { eye, target, up: up?, vertical_fov })
 }

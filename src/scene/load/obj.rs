@@ -14,10 +14,8 @@ const DEFAULT_ALBEDO: Vec3 = Vec3::splat(0.8);
 
 /// Adds the file's meshes and warnings to the scene; returns what it found, in words.
 pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<String, SceneError> {
-    let mut file = File {
-        folder: path.parent().unwrap_or(Path::new("")).into(),
-        ..File::default()
-    };
+    let mut file =
+        File { folder: path.parent().unwrap_or(Path::new("")).into(), ..File::default() };
     // Names and comments may be in any encoding.
     let text = String::from_utf8_lossy(bytes);
     let mut statement = String::new();
@@ -75,10 +73,8 @@ impl File {
     }
 
     fn face(&mut self, rest: &str) -> Option<()> {
-        let corners: Option<Vec<Corner>> = rest
-            .split_whitespace()
-            .map(|text| self.corner(text))
-            .collect();
+        let corners: Option<Vec<Corner>> =
+            rest.split_whitespace().map(|text| self.corner(text)).collect();
         let corners = corners?;
         if corners.len() < 3 {
             self.not_faces += 1;
@@ -89,8 +85,7 @@ impl File {
         let index = match self.index_of.get(&self.current) {
             Some(index) => *index,
             None => {
-                self.index_of
-                    .insert(self.current.clone(), self.meshes.len());
+                self.index_of.insert(self.current.clone(), self.meshes.len());
                 self.meshes.push((self.current.clone(), Vec::new()));
                 self.meshes.len() - 1
             }
@@ -104,11 +99,7 @@ impl File {
     fn corner(&self, text: &str) -> Option<Corner> {
         let index = |text: &str, count: usize| {
             let number: i64 = text.parse().ok()?;
-            Some(if number < 0 {
-                count as i64 + number
-            } else {
-                number - 1
-            })
+            Some(if number < 0 { count as i64 + number } else { number - 1 })
         };
         let mut fields = text.split('/');
         let position = index(fields.next()?, self.positions.len())?;
@@ -153,14 +144,8 @@ impl File {
     fn materials(&mut self, text: &str) {
         let mut name = "";
         for line in text.lines() {
-            let (keyword, rest) = line
-                .trim()
-                .split_once(char::is_whitespace)
-                .unwrap_or_default();
-            let numbers: Vec<f32> = rest
-                .split_whitespace()
-                .map_while(|n| n.parse().ok())
-                .collect();
+            let (keyword, rest) = line.trim().split_once(char::is_whitespace).unwrap_or_default();
+            let numbers: Vec<f32> = rest.split_whitespace().map_while(|n| n.parse().ok()).collect();
             match (keyword, &numbers[..]) {
                 ("newmtl", _) => name = rest.trim(),
                 ("Kd", &[r, g, b, ..]) => _ = self.albedo_of.insert(name.into(), albedo([r, g, b])),
@@ -177,32 +162,18 @@ impl File {
                 scene.warnings.push(format!("{count} {what}"));
             }
         };
-        counted(
-            self.not_faces,
-            "points, lines or faces of fewer than three corners skipped",
-        );
-        counted(
-            self.crossing,
-            "polygons cross themselves and may be covered wrongly",
-        );
+        counted(self.not_faces, "points, lines or faces of fewer than three corners skipped");
+        counted(self.crossing, "polygons cross themselves and may be covered wrongly");
         let found = format!("{} vertices and {} faces", self.positions.len(), self.faces);
         for ((group, material), triangles) in self.meshes {
             let names = [group.as_str(), material.as_str()];
             let named: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
             let draft = Draft {
-                name: if named.is_empty() {
-                    "unnamed".into()
-                } else {
-                    named.join("/")
-                },
+                name: if named.is_empty() { "unnamed".into() } else { named.join("/") },
                 positions: &self.positions,
                 normals: &self.normals,
                 triangles,
-                albedo: self
-                    .albedo_of
-                    .get(&material)
-                    .copied()
-                    .unwrap_or(DEFAULT_ALBEDO),
+                albedo: self.albedo_of.get(&material).copied().unwrap_or(DEFAULT_ALBEDO),
                 first_index: 1,
             };
             scene.meshes.extend(draft.finish(&mut scene.warnings));

@@ -28,12 +28,8 @@ pub(super) fn mesh(
 
     let vec3 = (Dimensions::Vec3, &[DataType::F32][..]);
     check("positions", primitive.get(&Semantic::Positions), vec3)?;
-    let positions = reader
-        .read_positions()
-        .ok_or_else(|| outside("positions"))?;
-    let positions: Vec<Vec3> = positions
-        .map(|p| world.transform_point3(p.into()))
-        .collect();
+    let positions = reader.read_positions().ok_or_else(|| outside("positions"))?;
+    let positions: Vec<Vec3> = positions.map(|p| world.transform_point3(p.into())).collect();
 
     check("normals", primitive.get(&Semantic::Normals), vec3)?;
     let normals: Option<Vec<Vec3>> = match primitive.get(&Semantic::Normals) {
@@ -42,21 +38,13 @@ pub(super) fn mesh(
             let normals = reader.read_normals().ok_or_else(|| outside("normals"))?;
             let to_world = normal_matrix(linear);
             // Only the direction matters, and the length may be beyond f32.
-            let turned = |n| {
-                (to_world * Vec3::from(n).as_dvec3())
-                    .normalize_or_zero()
-                    .as_vec3()
-            };
+            let turned = |n| (to_world * Vec3::from(n).as_dvec3()).normalize_or_zero().as_vec3();
             Some(normals.map(turned).collect())
         }
     };
 
     let integers = [DataType::U8, DataType::U16, DataType::U32];
-    check(
-        "indices",
-        primitive.indices(),
-        (Dimensions::Scalar, &integers),
-    )?;
+    check("indices", primitive.indices(), (Dimensions::Scalar, &integers))?;
     let indices: Vec<i64> = match primitive.indices() {
         None => (0..positions.len() as i64).collect(),
         Some(_) => {
@@ -65,14 +53,8 @@ pub(super) fn mesh(
         }
     };
 
-    let corner = |position| Corner {
-        position,
-        normal: normals.is_some().then_some(position),
-    };
-    let [r, g, b, _] = primitive
-        .material()
-        .pbr_metallic_roughness()
-        .base_color_factor();
+    let corner = |position| Corner { position, normal: normals.is_some().then_some(position) };
+    let [r, g, b, _] = primitive.material().pbr_metallic_roughness().base_color_factor();
     let draft = Draft {
         name,
         positions: &positions,
@@ -121,15 +103,10 @@ fn triangles(mode: Mode, indices: &[i64]) -> Vec<[i64; 3]> {
             .enumerate()
             .map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]])
             .collect(),
-        Mode::TriangleFan => indices
-            .windows(2)
-            .skip(1)
-            .map(|edge| [edge[0], edge[1], indices[0]])
-            .collect(),
-        _ => indices
-            .chunks_exact(3)
-            .map(|t| [t[0], t[1], t[2]])
-            .collect(),
+        Mode::TriangleFan => {
+            indices.windows(2).skip(1).map(|edge| [edge[0], edge[1], indices[0]]).collect()
+        }
+        _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
     }
 }
 

@@ -1,0 +1,343 @@
+//! The adapter against the f32 ports: bit for bit where the driver is known to round to nearest
+//! (lavapipe), and for the sampling functions through their own harness.
+
+#![cfg(feature = "gpu")]
+
+mod common;
+
+use common::{light, point, rng, spread, unit};
+use dpsm::gpu::{Device, Evaluator, GpuError, Resources, Texels, comparison_sampler};
+use dpsm::reflect::{Kind, Signature};
+use dpsm::render::Format;
+use dpsm::scalar::float::{Vec2, Vec3};
+use dpsm::scalar::light::{DPSM_LAYERS, DpsmLight};
+use dpsm::scalar::maps::{DepthMaps, Sampling};
+use dpsm::scalar::ports::{self, Flat, PORTS, Word};
+use dpsm::scalar::visibility::*;
+use dpsm::ulp::ulps_apart;
+use fastrand::Rng;
+
+/// Inputs of each function.
+const INPUTS: usize = 1 << 20;
+
+/// The adapter, or `None` with a printed line; an error where one is required.
+fn device() -> Option<Device> {
+    match Device::open() {
+        Ok(device) => {
+            println!("adapter: {}", device.describe());
+            Some(device)
+        }
+        Err(error) if std::env::var_os("DPSM_REQUIRE_ADAPTER").is_none() => {
+            println!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// A driver that neither fuses, flushes nor reorders.
+fn rounds_to_nearest(device: &Device) -> bool {
+    device.info.name.contains("llvmpipe")
+}
+
+/// One record over the function's domain, and now and then any finite bits at all.
+fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
+    let wild = rng.u8(0..8) == 0;
+    let mut words = Vec::new();
+    for (name, shape) in &signature.arguments {
+        let components = shape.components(name);
+        let integers = components.iter().all(|c| c.kind != Kind::Float);
+        match (name.as_str(), components.len()) {
+            _ if integers => words.push(Word::Integer(rng.u32(0..2))),
+            (_, count) if wild => {
+                for component in &components[..count] {
+                    words.push(match component.kind {
+                        Kind::Float => Word::Float(any_float(rng)),
+                        _ => Word::Integer(rng.u32(..)),
+                    });
+                }
+            }
+            ("light", _) => light(rng).write(&mut words),
+            ("normal" | "to_light" | "to_eye", 3) => unit(rng).write(&mut words),
+            ("guard" | "visibility" | "bias", 1) => words.push(Word::Float(rng.f32())),
+            (_, 3) => point(rng, -24, 24).write(&mut words),
+            (_, count) => {
+                words.extend((0..count).map(|_| Word::Float(spread(rng, -24, 24))));
+            }
+        }
+    }
+    words
+}
+
+/// Any finite float, by its bits.
+fn any_float(rng: &mut Rng) -> f32 {
+    loop {
+        let value = f32::from_bits(rng.u32(..));
+        if value.is_finite() {
+            return value;
+        }
+    }
+}
+
+fn bits(word: Word<f32>) -> u32 {
+    match word {
+        Word::Float(value) => value.to_bits(),
+        Word::Integer(value) => value,
+    }
+}
+
+/// The same float: equal bits, or both NaN.
+fn same(kind: Kind, a: u32, b: u32) -> bool {
+    let nan = |bits| f32::from_bits(bits).is_nan();
+    a == b || (kind == Kind::Float && nan(a) && nan(b))
+}
+
+#[test]
+fn ports_and_modules_declare_the_same_functions_in_the_same_order() {
+    for module in dpsm::MODULES {
+        let path = format!("{}/src/scalar/{}.rs", env!("CARGO_MANIFEST_DIR"), module.name);
+        let port = std::fs::read_to_string(path).unwrap();
+        let names = |text: &str, keyword: &str| -> Vec<String> {
+            let lines = text.lines().filter_map(|line| line.strip_prefix(keyword));
+            let end = |c: char| !(c.is_alphanumeric() || c == '_');
+            lines.map(|line| line.split(end).next().unwrap_or_default().to_string()).collect()
+        };
+        for (wgsl, rust) in
+            [("fn ", "pub fn "), ("const ", "pub const "), ("struct ", "pub struct ")]
+        {
+            assert_eq!(names(module.text, wgsl), names(&port, rust), "{}", module.name);
+        }
+        let sampling = ["dpsm_visibility", "dpsm_visibility_vertex"];
+        let listed = PORTS.iter().filter(|(name, _)| *name == module.name);
+        let listed: Vec<_> = listed.map(|(_, function)| *function).collect();
+        let declared = names(module.text, "fn ");
+        let plain = declared.iter().filter(|name| !sampling.contains(&name.as_str()));
+        assert_eq!(plain.collect::<Vec<_>>(), listed, "{}", module.name);
+    }
+}
+
+#[test]
+fn every_function_agrees_with_its_port() {
+    let Some(device) = device() else { return };
+    let exact = rounds_to_nearest(&device);
+    let mut failures = Vec::new();
+    println!("{:<26}{:>9}{:>11}{:>16}", "function", "inputs", "different", "floats apart");
+    for (_, function) in PORTS {
+        let evaluator = Evaluator::new(&device, function).unwrap();
+        let signature = &evaluator.signature;
+        let (inputs, outputs) = (signature.inputs(), signature.outputs());
+        let mut rng = rng(function);
+        let records: Vec<_> = (0..INPUTS).map(|_| record(signature, &mut rng)).collect();
+        let words: Vec<u32> = records.iter().flatten().map(|&word| bits(word)).collect();
+        assert_eq!(words.len(), INPUTS * inputs.len());
+        let answers = evaluator.run(&words, None).unwrap().words;
+        assert_eq!(answers.len(), INPUTS * outputs.len());
+        let (mut different, mut apart, mut first) = (0, 0, None);
+        for (record, answer) in records.iter().zip(answers.chunks(outputs.len())) {
+            let port = ports::call(function, record).unwrap();
+            let mut differs = false;
+            for ((component, &answer), port) in outputs.iter().zip(answer).zip(port) {
+                if !same(component.kind, answer, bits(port)) {
+                    differs = true;
+                    if let Word::Float(port) = port {
+                        apart = apart.max(ulps_apart(f32::from_bits(answer), port));
+                    }
+                    first.get_or_insert_with(|| format!("{record:?} gives {answer:08x}, {port:?}"));
+                }
+            }
+            different += usize::from(differs);
+        }
+        println!("{function:<26}{INPUTS:>9}{different:>11}{apart:>16}");
+        failures.extend(first.map(|first| format!("{function}: {first}")));
+    }
+    assert!(!exact || failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn evaluate_moves_typed_arrays_in_any_number_of_chunks() {
+    let Some(mut device) = device() else { return };
+    let mut rng = rng("chunks");
+    let points: Vec<glam::Vec3> =
+        (0..10_001).map(|_| unit(&mut rng)).map(|p| glam::Vec3::new(p.x, p.y, p.z)).collect();
+    let whole: Vec<glam::Vec2> = device.evaluate("dpsm_project", &points).unwrap();
+    device.chunk_bytes = 12 * 1000;
+    let split: Vec<glam::Vec2> = device.evaluate("dpsm_project", &points).unwrap();
+    assert_eq!(whole.len(), points.len());
+    assert_eq!(whole, split);
+    let words: Vec<u32> = bytemuck::cast_slice(&points).to_vec();
+    let evaluator = Evaluator::new(&device, "dpsm_project").unwrap();
+    assert_eq!(evaluator.run(&words, None).unwrap().chunks, 11);
+    assert_eq!(device.evaluate::<glam::Vec3, glam::Vec2>("dpsm_project", &[]).unwrap(), []);
+}
+
+#[test]
+fn wrong_records_and_unknown_functions_are_named() {
+    let Some(device) = device() else { return };
+    let error = device.evaluate::<f32, glam::Vec2>("dpsm_project", &[1.0]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`dpsm_project` takes 3 words a record (p.x: f32, p.y: f32, p.z: f32), not 4 bytes"
+    );
+    let error = device.evaluate::<glam::Vec3, f32>("dpsm_project", &[]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "`dpsm_project` cannot be evaluated: a result has 8 bytes, not 4"
+    );
+    let error = device.evaluate::<f32, f32>("dpsm_projct", &[]).unwrap_err();
+    assert_eq!(error.to_string(), "unknown function `dpsm_projct`; did you mean `dpsm_project`?");
+    let error = Evaluator::new(&device, "dpsm_visibility").unwrap().run(&[0; 28], None);
+    assert_eq!(
+        error.unwrap_err().to_string(),
+        "`dpsm_visibility` cannot be evaluated: it takes a texture, and none was given"
+    );
+}
+
+#[test]
+fn values_far_apart_in_one_struct_keep_their_places() {
+    let Some(device) = device() else { return };
+    let text = "struct Inner { a: array<vec2<i32>, 2>, flag: u32 }
+        struct Outer { m: mat2x3<f32>, inner: Inner, last: f32 }
+        fn shuffle(o: Outer, yes: bool) -> Outer {
+            var r = o;
+            r.m[0] = o.m[1];
+            r.m[1] = o.m[0];
+            r.inner.a[0] = -o.inner.a[1];
+            r.inner.flag = select(7u, o.inner.flag, yes);
+            return r;
+        }";
+    let linked = dpsm::link_source("shuffle.wgsl", text).unwrap();
+    let evaluator = Evaluator::of(&device, &linked, "shuffle").unwrap();
+    let float = |x: f32| x.to_bits();
+    let input: Vec<u32> =
+        (1..=6).map(|i| float(i as f32)).chain([10, 20, 30, 40, 99, float(0.5), 0]).collect();
+    let minus = |i: i32| (-i) as u32;
+    let expected: Vec<u32> = [4, 5, 6, 1, 2, 3]
+        .map(|i| float(i as f32))
+        .into_iter()
+        .chain([minus(30), minus(40), 30, 40, 7, float(0.5)])
+        .collect();
+    assert_eq!(evaluator.run(&input, None).unwrap().words, expected);
+}
+
+/// Maps of random depths, as the format stores them.
+fn random_maps(rng: &mut Rng, size: u32, format: Format, sampling: Sampling) -> DepthMaps {
+    let mut maps = DepthMaps::empty(size, 2, sampling);
+    maps.depths.fill_with(|| format.store(rng.f32()));
+    maps
+}
+
+#[test]
+fn depths_survive_upload_and_download_in_each_format() {
+    let Some(device) = device() else { return };
+    let texels = Texels::new(&device).unwrap();
+    let mut rng = rng("formats");
+    for format in [Format::D16, Format::D24, Format::D32] {
+        let maps = random_maps(&mut rng, 33, format, Sampling::Nearest);
+        let texture = texels.upload(&device, &maps, format).unwrap();
+        let view = array_view(&texture);
+        let back = texels.download(&device, &view, &texture, Sampling::Nearest).unwrap();
+        let steps = maps.depths.iter().zip(&back.depths).map(|(a, b)| (a - b).abs());
+        let most = steps.fold(0.0, f32::max);
+        println!("{format:?}: {most:e} apart, quantum {:e}", format.quantum());
+        // storage may give either neighbour, and a 24-bit unorm is itself rounded to f32
+        let allowed = match format {
+            Format::D16 => 1.0 / 65535.0,
+            Format::D24 => 1.0 / 16777215.0 + f32::EPSILON,
+            Format::D32 => 0.0,
+        };
+        assert!(most <= allowed, "{format:?}: {most:e}");
+    }
+}
+
+fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+/// Texel of a coordinate, unless it lies so close to a border that the adapter may take the next:
+/// WebGPU leaves the precision of coordinates to the device; 1/256 texel is D3D's least.
+fn clear_of_borders(st: Vec2<f32>, size: u32) -> bool {
+    [st.x, st.y].iter().all(|c| {
+        let at = f64::from(*c) * f64::from(size);
+        (at - at.round()).abs() > 1.0 / 256.0
+    })
+}
+
+#[test]
+fn sampling_functions_agree_with_their_ports() {
+    let Some(device) = device() else { return };
+    let texels = Texels::new(&device).unwrap();
+    let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let size = 64;
+    for format in [Format::D16, Format::D24, Format::D32] {
+        let mut rng = rng("sampling");
+        let maps = random_maps(&mut rng, size, format, Sampling::Nearest);
+        let texture = texels.upload(&device, &maps, format).unwrap();
+        let view = array_view(&texture);
+        let resources = Resources { texture: &view, sampler: &sampler };
+        let light = DpsmLight {
+            near: 0.1,
+            far: 4.0,
+            size: size as f32,
+            first_layer: 0,
+            placement: DPSM_LAYERS,
+            ..dpsm::cases::light(0)
+        };
+        let points: Vec<Vec3<f32>> =
+            (0..INPUTS).map(|_| unit(&mut rng) * (4.0 * rng.f32())).collect();
+        let by_pixel = |&p: &Vec3<f32>| {
+            let mut words = Vec::new();
+            (p.write(&mut words), light.write(&mut words), 0.001_f32.write(&mut words));
+            words
+        };
+        let by_vertex = |&p: &Vec3<f32>| {
+            let mut words = Vec::new();
+            dpsm_receiver_vertex(p, light).write(&mut words);
+            (light.write(&mut words), 0.001_f32.write(&mut words));
+            words
+        };
+        let check = |function: &str, records: Vec<Vec<Word<f32>>>, port: &dyn Fn(usize) -> f32| {
+            let words: Vec<u32> = records.iter().flatten().map(|&word| bits(word)).collect();
+            let evaluator = Evaluator::new(&device, function).unwrap();
+            let answers = evaluator.run(&words, Some(resources)).unwrap().words;
+            let (mut compared, mut lit) = (0, 0);
+            for (i, (&p, answer)) in points.iter().zip(&answers).enumerate() {
+                let at = dpsm_lookup(p, light);
+                let texel = at.coordinates * size as f32;
+                let stored = maps.depths[maps.index(texel.x as i64, texel.y as i64, at.layer)];
+                // a depth within one quantum of the stored one may compare either way
+                let quantum = format.quantum().max(f32::EPSILON);
+                let clear = (at.depth - 0.001 - stored).abs() > quantum;
+                if clear_of_borders(at.coordinates, size) && clear {
+                    compared += 1;
+                    lit += usize::from(port(i) == 1.0);
+                    assert_eq!(f32::from_bits(*answer), port(i), "{function} {format:?} {p:?}");
+                }
+            }
+            println!("{function} {format:?}: {compared} of {INPUTS} compared, {lit} lit");
+            assert!(compared > INPUTS * 9 / 10 && lit > INPUTS / 10 && lit < compared * 9 / 10);
+        };
+        check("dpsm_visibility", points.iter().map(by_pixel).collect(), &|i| {
+            dpsm_visibility(&maps, points[i], light, 0.001)
+        });
+        check("dpsm_visibility_vertex", points.iter().map(by_vertex).collect(), &|i| {
+            dpsm_visibility_vertex(&maps, dpsm_receiver_vertex(points[i], light), light, 0.001)
+        });
+    }
+}
+
+#[test]
+fn sizes_above_the_adapters_limits_are_refused_by_name() {
+    let Some(device) = device() else { return };
+    let limit = device.device.limits().max_texture_dimension_2d;
+    let maps =
+        DepthMaps { size: limit + 1, layers: 1, depths: vec![], sampling: Sampling::Nearest };
+    let error = Texels::new(&device).unwrap().upload(&device, &maps, Format::D32).unwrap_err();
+    assert!(matches!(&error, GpuError::Limit { what: "map size", .. }), "{error}");
+    assert_eq!(
+        error.to_string(),
+        format!("map size {} is outside this adapter's range 1 to {limit}", limit + 1)
+    );
+}

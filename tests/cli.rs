@@ -1,0 +1,268 @@
+//! The program: its commands, and what it says to bad input.
+
+#![cfg(feature = "cli")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// An empty folder of its own for each test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{name}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn dpsm(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dpsm"));
+    command.current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Files in a folder, by name.
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Runs a command that must fail with exit code 2, say all of `parts` and leave no file behind.
+fn refused(name: &str, arguments: &[&str], parts: &[&str]) {
+    let folder = folder(name);
+    let before = files(&folder);
+    let output = dpsm(&folder, arguments);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+    for part in parts {
+        assert!(stderr.contains(part), "{arguments:?}: `{part}` is not in\n{stderr}");
+    }
+    assert!(!stderr.contains("panicked"), "{stderr}");
+    assert_eq!(files(&folder), before, "{arguments:?} left files behind");
+}
+
+#[test]
+fn no_argument_renders_both_scenes_of_the_paper() {
+    let folder = folder("main-job");
+    let output = dpsm(&folder, &["--adapter", "cpu"]);
+    let stdout = text(&output.stdout);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(stdout.contains("the scalar ports on the processor"), "{stdout}");
+    let expected = [
+        "brabec-ceiling-front-map.png",
+        "brabec-ceiling-front-view.png",
+        "brabec-ceiling.png",
+        "brabec-room-back-map.png",
+        "brabec-room-back-view.png",
+        "brabec-room-front-map.png",
+        "brabec-room-front-view.png",
+        "brabec-room.png",
+    ];
+    assert_eq!(files(&folder.join("dpsm-pictures")), expected);
+    for name in expected {
+        assert!(stdout.contains(name), "{name} is not named in\n{stdout}");
+        let picture = image::open(folder.join("dpsm-pictures").join(name)).unwrap();
+        assert_eq!((picture.width(), picture.height()), (512, 512), "{name}");
+    }
+    for pass in ["front map", "back map", "camera"] {
+        assert!(stdout.contains(pass), "no time of {pass} in\n{stdout}");
+    }
+}
+
+#[test]
+fn missing_adapter_falls_back_to_the_ports_and_says_so() {
+    let folder = folder("no-adapter");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dpsm"));
+    command.current_dir(&folder).env("WGPU_ADAPTER_NAME", "no such adapter");
+    let arguments = ["render", "cornell", "--size", "64", "--image", "32x24", "-o", "cornell.png"];
+    let output = command.args(arguments).output().unwrap();
+    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("no usable adapter whose name contains `no such adapter`"), "{stderr}");
+    assert!(stdout.contains("the scalar ports on the processor"), "{stdout}");
+    assert_eq!(files(&folder), ["cornell.png"]);
+
+    let output = command.args(["--adapter", "gpu"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("--adapter cpu"), "the remedy is not named");
+}
+
+#[test]
+fn negative_light_coordinates_work_with_and_without_an_equals_sign() {
+    let folder = folder("negative");
+    for (name, light) in
+        [("a.png", &["--light=-0.1,0.3,-0.2"][..]), ("b.png", &["--light", "-0.1,0.3,-0.2"])]
+    {
+        let mut arguments = vec![
+            "render",
+            "cornell",
+            "--adapter",
+            "cpu",
+            "--size",
+            "64",
+            "--image",
+            "32x24",
+            "-o",
+            name,
+        ];
+        arguments.extend(light);
+        let output = dpsm(&folder, &arguments);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+    }
+    let read = |name| std::fs::read(folder.join(name)).unwrap();
+    assert_eq!(read("a.png"), read("b.png"));
+}
+
+#[test]
+fn bad_scenes_are_refused() {
+    let folder = folder("scenes");
+    let write = |name: &str, text: &str| {
+        std::fs::write(folder.join(name), text).unwrap();
+        folder.join(name).display().to_string()
+    };
+    let empty = write("no-triangles.obj", "v 0 0 0\n");
+    let malformed = write("malformed.gltf", "{ \"asset\": ");
+    let render = |scene| ["render", scene, "--adapter", "cpu", "-o", "out.png"];
+    refused("unknown", &render("brabec-rom"), &["brabec-rom", "brabec-room"]);
+    refused("missing", &render("nowhere.obj"), &["nowhere.obj"]);
+    refused("empty", &render(&empty), &["no-triangles.obj", "triangles"]);
+    refused("malformed", &render(&malformed), &["malformed.gltf"]);
+}
+
+#[test]
+fn non_finite_vertices_are_counted_named_and_dropped_with_a_warning() {
+    let folder = folder("non-finite");
+    let scene = "o quad\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv nan 0 0\n\
+                 f 1 2 3\nf 1 3 4\nf 1 2 5\n";
+    std::fs::write(folder.join("quad.obj"), scene).unwrap();
+    let arguments = [
+        "render",
+        "quad.obj",
+        "--adapter",
+        "cpu",
+        "--light",
+        "0.5,0.5,2",
+        "--size",
+        "64",
+        "--image",
+        "32x24",
+        "-o",
+        "quad.png",
+    ];
+    let output = dpsm(&folder, &arguments);
+    let stderr = text(&output.stderr);
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("1 non-finite"), "{stderr}");
+    assert!(stderr.contains("1 triangle"), "{stderr}");
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let with = |extra: &[&'static str]| {
+        let mut arguments = vec!["render", "cornell", "--adapter", "cpu", "-o", "out.png"];
+        arguments.extend(extra);
+        arguments
+    };
+    refused("light-text", &with(&["--light", "1,2"]), &["--light", "three numbers"]);
+    refused("light-range", &with(&["--light", "1e39,0,0"]), &["1e39", "float range"]);
+    refused("light-huge", &with(&["--light", "1e30,0,0"]), &["light", "1e18"]);
+    refused("light-nan", &with(&["--light", "nan,0,0"]), &["nan", "float range"]);
+    refused("spheres", &with(&["--near", "2", "--far", "1"]), &["near 2", "far 1"]);
+    refused("size-zero", &with(&["--size", "0"]), &["--size 0"]);
+    refused("size-large", &with(&["--size", "100000"]), &["--size 100000", "16384"]);
+    refused("image", &with(&["--image", "0x10"]), &["image width 0"]);
+    refused("image-text", &with(&["--image", "10"]), &["960x720"]);
+    refused("method", &with(&["--method", "exact"]), &["--method exact is not built yet"]);
+    refused("method-name", &with(&["--method", "vertx"]), &["vertex"]);
+    refused("walls", &["render", "brabec-room", "--walls", "0", "-o", "o.png"], &["walls"]);
+    refused("same-point", &with(&["--camera", "0,0,0", "--look-at", "0,0,0"]), &["same point"]);
+}
+
+#[test]
+fn unwritable_outputs_are_refused_and_nothing_is_half_written() {
+    let render = |output| ["render", "cornell", "--adapter", "cpu", "--size", "64", "-o", output];
+    refused("no-folder", &render("missing/out.png"), &["missing/out.png", "-o"]);
+    let folder = folder("is-folder");
+    std::fs::create_dir(folder.join("out.png")).unwrap();
+    let output = dpsm(&folder, &render("out.png"));
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(files(&folder), ["out.png"]);
+}
+
+#[test]
+fn modules_are_listed_with_their_imports() {
+    let output = dpsm(&folder("modules"), &["modules"]);
+    insta::assert_snapshot!("modules", text(&output.stdout));
+}
+
+#[test]
+fn link_prints_or_writes_the_linked_text() {
+    let folder = folder("link");
+    let output = dpsm(&folder, &["link", "visibility"]);
+    assert!(output.status.success());
+    assert_eq!(text(&output.stdout), dpsm::link(&["visibility"]).unwrap().text);
+    let output = dpsm(&folder, &["link", "shade", "depth::dpsm_depth", "-o", "out.wgsl"]);
+    assert!(output.status.success() && output.stdout.is_empty());
+    let written = std::fs::read_to_string(folder.join("out.wgsl")).unwrap();
+    assert_eq!(written, dpsm::link(&["shade", "depth::dpsm_depth"]).unwrap().text);
+    refused("link-unknown", &["link", "visbility"], &["visbility", "`visibility`"]);
+    refused("link-missing", &["link", "missing.wesl"], &["missing.wesl"]);
+}
+
+#[test]
+fn validate_names_the_users_own_line() {
+    let folder = folder("validate");
+    let good = "import dpsm::depth::{dpsm_depth};\n\nfn f(l: f32) -> f32 { return dpsm_depth(l, 0.1, 1.0); }\n";
+    let bad = good.replace("0.1, 1.0", "0.1");
+    std::fs::write(folder.join("good.wesl"), good).unwrap();
+    std::fs::write(folder.join("bad.wesl"), bad).unwrap();
+    let output = dpsm(&folder, &["validate", "good.wesl"]);
+    assert!(output.status.success());
+    assert!(text(&output.stdout).starts_with("good.wesl: valid"), "{}", text(&output.stdout));
+    let output = dpsm(&folder, &["validate", "bad.wesl"]);
+    let stderr = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr.contains("bad.wesl:3:"), "{stderr}");
+    assert!(stderr.contains("return dpsm_depth(l, 0.1);"), "{stderr}");
+}
+
+#[test]
+fn eval_compares_adapter_port_and_reference() {
+    let folder = folder("eval");
+    std::fs::write(folder.join("points.csv"), "x,y,z\n3,4,0\n0,0,-1\n").unwrap();
+    let output =
+        dpsm(&folder, &["eval", "dpsm_project", "--adapter", "cpu", "--input", "points.csv"]);
+    let stdout = text(&output.stdout);
+    let lines: Vec<_> = stdout.lines().collect();
+    assert_eq!(
+        lines[0],
+        "record,component,adapter,port_f32,reference_f64,floats_adapter_port,ulp_port_reference"
+    );
+    assert_eq!(lines[1], "1,x,,0.6,0.6,,0.400");
+    assert_eq!(lines[3], "2,x,,33554432,33554432,,0.000");
+    assert_eq!(lines.len(), 5);
+    let output = dpsm(&folder, &["eval", "dpsm_lookup", "--adapter", "cpu"]);
+    assert!(text(&output.stdout).contains("back pole"), "hard cases are the default input");
+}
+
+#[test]
+fn eval_names_the_line_and_column_of_a_bad_record() {
+    let folder = folder("eval-bad");
+    let path = |name: &str, text: &str| {
+        std::fs::write(folder.join(name), text).unwrap();
+        folder.join(name).display().to_string()
+    };
+    let eval = |path| ["eval", "dpsm_project", "--adapter", "cpu", "--input", path];
+    let number = path("number.csv", "p.x,p.y,p.z\n1,2,3\n1,two,3\n");
+    refused("eval-number", &eval(&number), &["number.csv:3", "`p.y`", "`two`"]);
+    let column = path("column.csv", "p.x,p.y\n1,2\n");
+    refused("eval-column", &eval(&column), &["column.csv:1", "`p.z`", "p.x,p.y,p.z"]);
+    let short = path("short.csv", "p.x,p.y,p.z\n1,2\n");
+    refused("eval-short", &eval(&short), &["short.csv:2"]);
+    refused("eval-name", &["eval", "dpsm_projct"], &["dpsm_projct", "`dpsm_project`"]);
+    refused("eval-texture", &["eval", "dpsm_visibility"], &["dpsm_visibility", "texture"]);
+}
