@@ -2,7 +2,7 @@
 //! share them.
 
 use crate::scalar::float::{Vec2, Vec3, Vec4};
-use crate::scalar::hemisphere::DPSM_POLE_RADIUS;
+use crate::scalar::hemisphere::{DPSM_BACK, DPSM_POLE_RADIUS};
 use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
 use crate::scalar::ports::{Flat, PORTS, Word};
 
@@ -63,7 +63,7 @@ pub fn light(placement: u32) -> DpsmLight<f32> {
         right: Vec3::new(2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0),
         far: 10.0,
         up: Vec3::new(-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0),
-        guard: 1.0 / 64.0,
+        guard: GUARD,
         forward: Vec3::new(2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0),
         size: 512.0,
         rectangle: Vec4::new(0.25, 0.5, 0.25, 0.5),
@@ -83,123 +83,59 @@ pub fn of(function: &str) -> Vec<Case> {
         |name: &str| [(format!("{name}, layers"), layers), (format!("{name}, atlas"), atlas)];
     let mut cases = Cases::default();
     match function {
-        "dpsm_to_light" => {
-            for (name, [x, y, z]) in POINTS {
-                let world = layers.position + Vec3::new(*x, *y, *z);
-                cases.add(*name, |words| (world.write(words), layers.write(words)));
-            }
-        }
-        "dpsm_hemisphere" | "dpsm_project" => {
-            for (name, p) in POINTS {
-                cases.add(*name, |words| point(p).write(words));
-            }
-        }
-        "dpsm_flip" => {
-            for (name, p) in POINTS {
-                cases.add(*name, |words| (point(p).write(words), 1_u32.write(words)));
-            }
-        }
-        "dpsm_invert" | "dpsm_unproject" => {
-            for (name, uv) in DISKS {
-                cases.add(*name, |words| disk(uv).write(words));
-            }
-        }
+        "dpsm_to_light" => cases.each(POINTS, |p| (layers.position + point(p), layers)),
+        "dpsm_hemisphere" | "dpsm_project" => cases.each(POINTS, point),
+        "dpsm_flip" => cases.each(POINTS, |p| (point(p), DPSM_BACK)),
+        "dpsm_invert" | "dpsm_unproject" => cases.each(DISKS, disk),
         "dpsm_texel_pitch" | "dpsm_texel_solid_angle" => {
-            for (name, uv) in DISKS {
-                cases.add(*name, |words| {
-                    disk(uv).write(words);
-                    (512.0_f32.write(words), (1.0_f32 / 64.0).write(words));
-                });
-            }
+            cases.each(DISKS, |uv| (disk(uv), 512.0, GUARD));
         }
         "dpsm_disk_to_texture" | "dpsm_texture_to_disk" => {
-            for (name, uv) in DISKS {
-                cases.add(*name, |words| (disk(uv).write(words), (1.0_f32 / 64.0).write(words)));
-            }
+            cases.each(DISKS, |uv| (disk(uv), GUARD));
         }
-        "dpsm_light_layer" => {
-            for (name, light) in both("back map") {
-                cases.add(name, |words| (light.write(words), 1_u32.write(words)));
-            }
-        }
+        "dpsm_light_layer" => cases.each(&both("back map"), |light| (light, DPSM_BACK)),
         "dpsm_light_coordinates" => {
-            for (name, light) in both("back map") {
-                cases.add(name, |words| {
-                    (light.write(words), 1_u32.write(words), Vec2::new(0.5_f32, 1.0).write(words));
-                });
-            }
+            cases.each(&both("back map"), |light| (light, DPSM_BACK, Vec2::new(0.5, 1.0)));
         }
         "dpsm_depth" | "dpsm_within" | "dpsm_receiver_depth" => {
-            for (name, [l, near, far]) in DISTANCES {
-                cases.add(*name, |words| (l.write(words), near.write(words), far.write(words)));
-            }
+            cases.each(DISTANCES, |[l, near, far]| (l, near, far));
         }
         "dpsm_distance" => {
-            for (name, depth) in
-                [("near", 0.0_f32), ("far", 1.0), ("between", 0.3), ("beyond", 1.5)]
-            {
-                cases.add(name, |words| {
-                    (depth.write(words), 0.1_f32.write(words), 10.0_f32.write(words));
-                });
-            }
+            let depths = [("near", 0.0), ("far", 1.0), ("between", 0.3), ("beyond far", 1.5)];
+            cases.each(&depths, |depth| (depth, 0.1, 10.0));
         }
         "dpsm_caster_border" => {
-            for (name, guard) in [("no guard", 0.0_f32), ("narrow", 1.0 / 64.0), ("widest", 1.0)] {
-                cases.add(name, |words| guard.write(words));
-            }
+            cases.each(&[("no guard", 0.0), ("narrow", GUARD), ("widest", 1.0)], |guard| guard);
         }
         "dpsm_caster_keep" => {
-            let below = 0.5_f32.next_down();
-            for (name, value) in [("border", 0.5), ("just outside", below), ("far behind", -3.0)] {
-                cases.add(name, |words| value.write(words));
-            }
+            let outside = 0.5_f32.next_down();
+            let values = [("border", 0.5), ("just outside", outside), ("far behind", -3.0)];
+            cases.each(&values, |value| value);
         }
         "dpsm_caster_vertex" | "dpsm_caster_fragment" => {
-            for (name, p) in POINTS {
-                cases.add(*name, |words| {
-                    (point(p).write(words), layers.write(words), 0.01_f32.write(words));
-                });
-            }
+            cases.each(POINTS, |p| (point(p), layers, 0.01));
         }
         "dpsm_lookup" | "dpsm_receiver_vertex" => {
             for (name, p) in POINTS {
-                for (name, light) in both(name) {
-                    cases.add(name, |words| (point(p).write(words), light.write(words)));
-                }
+                cases.each(&both(name), |light| (point(*p), light));
             }
         }
-        "dpsm_shade" => {
-            for (name, visibility) in [("lit", 1.0_f32), ("in shadow", 0.0), ("half", 0.5)] {
-                cases.add(name, |words| {
-                    (unit.write(words), unit.write(words), unit.write(words));
-                    visibility.write(words);
-                });
-            }
-        }
+        "dpsm_shade" => cases.each(VISIBILITIES, |visibility| (unit, unit, unit, visibility)),
         "dpsm_blend" => {
-            for (name, visibility) in [("lit", 1.0_f32), ("in shadow", 0.0), ("half", 0.5)] {
-                cases.add(name, |words| {
-                    (unit.write(words), Vec3::splat(0.1_f32).write(words));
-                    visibility.write(words);
-                });
-            }
+            cases.each(VISIBILITIES, |visibility| (unit, Vec3::splat(0.1), visibility));
         }
-        "dpsm_lambert" => {
-            for (name, to_light) in DIRECTIONS {
-                cases.add(*name, |words| (unit.write(words), point(to_light).write(words)));
-            }
-        }
-        "dpsm_highlight" => {
-            for (name, to_light) in DIRECTIONS {
-                cases.add(*name, |words| {
-                    (unit.write(words), point(to_light).write(words), unit.write(words));
-                });
-            }
-        }
+        "dpsm_lambert" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light))),
+        "dpsm_highlight" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light), unit)),
         _ => {}
     }
     cases.0
 }
+
+/// Width of the guard band in the cases.
+const GUARD: f32 = 1.0 / 64.0;
+
+/// Shares of the light that arrive.
+const VISIBILITIES: &[(&str, f32)] = &[("lit", 1.0), ("in shadow", 0.0), ("half", 0.5)];
 
 /// Unit vectors beside (0.6, 0, 0.8).
 const DIRECTIONS: &[(&str, [f32; 3])] = &[
@@ -218,17 +154,24 @@ pub fn all() -> impl Iterator<Item = (&'static str, Vec<Case>)> {
 struct Cases(Vec<Case>);
 
 impl Cases {
-    fn add<R>(&mut self, name: impl Into<String>, write: impl FnOnce(&mut Vec<Word<f32>>) -> R) {
-        let mut words = Vec::new();
-        write(&mut words);
-        self.0.push(Case { name: name.into(), words });
+    /// Adds a case for each named value, its words those of the arguments made from it.
+    fn each<V: Copy, A: Flat<f32>>(
+        &mut self,
+        named: &[(impl AsRef<str>, V)],
+        arguments: impl Fn(V) -> A,
+    ) {
+        for (name, value) in named {
+            let mut words = Vec::new();
+            arguments(*value).write(&mut words);
+            self.0.push(Case { name: name.as_ref().to_string(), words });
+        }
     }
 }
 
-fn point(&[x, y, z]: &[f32; 3]) -> Vec3<f32> {
+fn point([x, y, z]: [f32; 3]) -> Vec3<f32> {
     Vec3::new(x, y, z)
 }
 
-fn disk(&[x, y]: &[f32; 2]) -> Vec2<f32> {
+fn disk([x, y]: [f32; 2]) -> Vec2<f32> {
     Vec2::new(x, y)
 }

@@ -289,13 +289,13 @@ fn sampling_functions_agree_with_their_ports() {
             (0..INPUTS).map(|_| unit(&mut rng) * (4.0 * rng.f32())).collect();
         let by_pixel = |&p: &Vec3<f32>| {
             let mut words = Vec::new();
-            (p.write(&mut words), light.write(&mut words), 0.001_f32.write(&mut words));
+            (p, light, 0.001_f32).write(&mut words);
             words
         };
         let by_vertex = |&p: &Vec3<f32>| {
             let mut words = Vec::new();
             dpsm_receiver_vertex(p, light).write(&mut words);
-            (light.write(&mut words), 0.001_f32.write(&mut words));
+            (light, 0.001_f32).write(&mut words);
             words
         };
         let check = |function: &str, records: Vec<Vec<Word<f32>>>, port: &dyn Fn(usize) -> f32| {

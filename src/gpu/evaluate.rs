@@ -10,11 +10,11 @@ use bytemuck::Pod;
 
 use super::{Device, GpuError};
 use crate::link::{Linked, link_function};
-use crate::reflect::{Kind, Shape, Signature};
+use crate::reflect::{Component, Kind, Shape, Signature};
 use crate::validate::validate;
 
-/// Invocations of a workgroup.
-const WORKGROUP: u32 = 64;
+/// Invocations of a workgroup, the most that every adapter allows.
+const WORKGROUP: u32 = 256;
 
 /// What the records' function reads besides them.
 #[derive(Clone, Copy, Debug)]
@@ -129,9 +129,7 @@ impl<'a> Evaluator<'a> {
                 reason: "it takes a texture, and none was given".into(),
             });
         }
-        let groups = self.device.device.limits().max_compute_workgroups_per_dimension;
-        let fitting = self.device.chunk_bytes / (4 * taken.max(given) as u64);
-        let chunk = fitting.clamp(1, u64::from(groups) * u64::from(WORKGROUP)) as usize;
+        let chunk = (self.device.chunk_bytes / (4 * taken.max(given) as u64)).max(1) as usize;
         let mut evaluation = Evaluation { words: Vec::new(), chunks: 0 };
         for records in words.chunks(chunk * taken) {
             let results = self.run_chunk(records, records.len() / taken, given, resources)?;
@@ -207,12 +205,16 @@ impl<'a> Evaluator<'a> {
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &group, &[]);
-        pass.dispatch_workgroups((count as u32).div_ceil(WORKGROUP), 1, 1);
+        // two dimensions, as one is limited to 65535 workgroups on many adapters
+        let groups = (count as u32).div_ceil(WORKGROUP);
+        let rows =
+            groups.div_ceil(self.device.device.limits().max_compute_workgroups_per_dimension);
+        pass.dispatch_workgroups(groups.div_ceil(rows.max(1)), rows, 1);
     }
 
     fn record_error(&self, given: String) -> GpuError {
         let components = self.signature.inputs();
-        let names = |c: &crate::reflect::Component| format!("{}: {}", c.path, c.kind.wgsl());
+        let names = |c: &Component| format!("{}: {}", c.path, c.kind.wgsl());
         GpuError::Record {
             function: self.signature.name.clone(),
             expected: components.len(),
@@ -224,9 +226,12 @@ impl<'a> Evaluator<'a> {
 
 /// The generated entry point: unpacks a record's words, calls the function, packs its result.
 pub fn entry_point(signature: &Signature) -> String {
-    let mut text = String::from(
-        "@group(0) @binding(0) var<storage, read> evaluation_input: array<u32>;\n\
-         @group(0) @binding(1) var<storage, read_write> evaluation_output: array<u32>;\n",
+    let mut text = String::new();
+    record_struct(&mut text, "EvaluationInput", &signature.inputs());
+    record_struct(&mut text, "EvaluationOutput", &signature.outputs());
+    text.push_str(
+        "@group(0) @binding(0) var<storage, read> evaluation_input: array<EvaluationInput>;\n\
+         @group(0) @binding(1) var<storage, read_write> evaluation_output: array<EvaluationOutput>;\n",
     );
     let mut arguments = Vec::new();
     let mut word = 0;
@@ -241,41 +246,52 @@ pub fn entry_point(signature: &Signature) -> String {
             arguments.push(unpack(shape, &mut word));
         }
     }
-    let outputs = signature.outputs();
+    let pack = |component: &Component| match component.kind {
+        Kind::Bool => format!("select(0u, 1u, result{})", component.path),
+        _ => format!("result{}", component.path),
+    };
     let _ = write!(
         text,
         "\n@compute @workgroup_size({WORKGROUP})\n\
-         fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{\n\
-         \x20   let record = id.x * {word}u;\n\
-         \x20   if record >= arrayLength(&evaluation_input) {{ return; }}\n\
-         \x20   let result = {}({});\n",
+         fn evaluate(\n\
+         \x20   @builtin(global_invocation_id) id: vec3<u32>,\n\
+         \x20   @builtin(num_workgroups) groups: vec3<u32>,\n\
+         ) {{\n\
+         \x20   let index = id.y * groups.x * {WORKGROUP}u + id.x;\n\
+         \x20   if index >= arrayLength(&evaluation_input) {{ return; }}\n\
+         \x20   let record = evaluation_input[index];\n\
+         \x20   let result = {}({});\n\
+         \x20   evaluation_output[index] = EvaluationOutput({});\n\
+         }}\n",
         signature.name,
         arguments.join(", "),
+        signature.outputs().iter().map(pack).collect::<Vec<_>>().join(", "),
     );
-    for (index, component) in outputs.iter().enumerate() {
-        let value = format!("result{}", component.path);
-        let packed = match component.kind {
-            Kind::Unsigned => value,
-            Kind::Bool => format!("select(0u, 1u, {value})"),
-            Kind::Float | Kind::Signed => format!("bitcast<u32>({value})"),
+    text
+}
+
+/// A struct of a record's words: loaded and stored as a whole, its bounds are checked once.
+fn record_struct(text: &mut String, name: &str, components: &[Component]) {
+    let _ = writeln!(text, "struct {name} {{");
+    for (word, component) in components.iter().enumerate() {
+        let ty = match component.kind {
+            Kind::Bool => Kind::Unsigned, // a bool cannot be stored
+            kind => kind,
         };
-        let count = outputs.len();
-        let _ = writeln!(text, "    evaluation_output[id.x * {count}u + {index}u] = {packed};");
+        let _ = writeln!(text, "    word_{word}: {},", ty.wgsl());
     }
     text.push_str("}\n");
-    text
 }
 
 /// A WGSL expression that builds a value from the record's words, counting them.
 fn unpack(shape: &Shape, word: &mut usize) -> String {
     match shape {
         Shape::Scalar(kind) => {
-            let stored = format!("evaluation_input[record + {word}u]");
+            let stored = format!("record.word_{word}");
             *word += 1;
             match kind {
-                Kind::Unsigned => stored,
                 Kind::Bool => format!("({stored} != 0u)"),
-                Kind::Float | Kind::Signed => format!("bitcast<{}>({stored})", kind.wgsl()),
+                _ => stored,
             }
         }
         Shape::Composite(constructor, parts) => {

@@ -91,35 +91,53 @@ flat! {
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
 }
 
+macro_rules! tuple {
+    ($($part:ident: $t:ident),+) => {
+        /// Values one after the other, as a function's arguments.
+        impl<T, $($t: Flat<T>),+> Flat<T> for ($($t,)+) {
+            fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+                Some(($($t::read(words)?,)+))
+            }
+            fn write(self, words: &mut Vec<Word<T>>) {
+                let ($($part,)+) = self;
+                $( $part.write(words); )+
+            }
+        }
+    };
+}
+tuple!(a: A);
+tuple!(a: A, b: B);
+tuple!(a: A, b: B, c: C);
+tuple!(a: A, b: B, c: C, d: D);
+
 /// A function of flat arguments.
 trait Callable<T, Arguments> {
     fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>>;
 }
 
 macro_rules! callable {
-    ($($argument:ident)+) => {
-        impl<T, F, R: Flat<T>, $($argument: Flat<T>),+> Callable<T, ($($argument,)+)> for F
+    ($($part:ident: $t:ident),+) => {
+        impl<T: Copy, F, R: Flat<T>, $($t: Flat<T>),+> Callable<T, ($($t,)+)> for F
         where
-            T: Copy,
-            F: Fn($($argument),+) -> R,
+            F: Fn($($t),+) -> R,
         {
             fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
                 let mut words = words.iter().copied();
-                let result = self($($argument::read(&mut words)?),+);
+                let ($($part,)+) = Flat::read(&mut words)?;
                 if words.next().is_some() {
                     return None;
                 }
                 let mut out = Vec::new();
-                result.write(&mut out);
+                self($($part),+).write(&mut out);
                 Some(out)
             }
         }
     };
 }
-callable!(A);
-callable!(A B);
-callable!(A B C);
-callable!(A B C D);
+callable!(a: A);
+callable!(a: A, b: B);
+callable!(a: A, b: B, c: C);
+callable!(a: A, b: B, c: C, d: D);
 
 macro_rules! ports {
     ($($module:ident { $($function:ident),+ $(,)? })+) => {

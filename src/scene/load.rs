@@ -2,7 +2,6 @@
 
 mod gltf;
 mod obj;
-mod polygon;
 mod primitive;
 
 use std::collections::{BTreeSet, HashMap};
@@ -40,9 +39,9 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
         camera: None,
         warnings: Vec::new(),
     };
-    // The gltf crate's arithmetic on offsets and lengths is unchecked.
+    // The arithmetic of gltf on offsets and lengths, and of tobj on indices, is unchecked.
     let found = catch_unwind(AssertUnwindSafe(|| reader(path, &bytes, &mut scene)))
-        .unwrap_or_else(|_| Err(malformed(path, "its offsets or lengths are impossible")))?;
+        .unwrap_or_else(|_| Err(malformed(path, "its offsets or indices are impossible")))?;
     if scene.triangle_count() == 0 {
         let found = [&[found], &scene.warnings[..]].concat().join("; ");
         return Err(SceneError::Empty { path: path_buf(), found });
@@ -69,8 +68,8 @@ fn albedo(color: [f32; 3]) -> Vec3 {
 /// A triangle's corner: indices of its position and normal, counted from zero, unchecked.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Corner {
-    position: i64,
-    normal: Option<i64>,
+    position: u32,
+    normal: Option<u32>,
 }
 
 type Triangle = [Corner; 3];
@@ -82,14 +81,12 @@ struct Draft<'a> {
     normals: &'a [Vec3],
     triangles: Vec<Triangle>,
     albedo: Vec3,
-    /// How the file numbers its first vertex, for the warnings.
-    first_index: i64,
 }
 
 /// Vertices that cannot be used, and how many triangles they cost.
 #[derive(Default)]
 struct Dropped {
-    vertices: BTreeSet<i64>,
+    vertices: BTreeSet<u32>,
     triangles: usize,
 }
 
@@ -141,7 +138,7 @@ impl Draft<'_> {
             warn(format!(
                 "{} non-finite vertices (first: {}), {} triangles dropped",
                 non_finite.vertices.len(),
-                first + self.first_index,
+                first,
                 non_finite.triangles
             ));
         }
@@ -149,7 +146,7 @@ impl Draft<'_> {
             warn(format!(
                 "{} vertex indices out of range (first: {}, of {} vertices), {} triangles dropped",
                 out_of_range.vertices.len(),
-                first + self.first_index,
+                first,
                 self.positions.len(),
                 out_of_range.triangles
             ));
@@ -162,15 +159,15 @@ impl Draft<'_> {
 }
 
 impl Dropped {
-    fn add(&mut self, corners: Triangle, bad: impl Fn(i64) -> bool) {
+    fn add(&mut self, corners: Triangle, bad: impl Fn(u32) -> bool) {
         let vertices = corners.map(|corner| corner.position);
         self.vertices.extend(vertices.into_iter().filter(|&i| bad(i)));
         self.triangles += 1;
     }
 }
 
-fn at<T: Copy>(items: &[T], index: i64) -> Option<T> {
-    items.get(usize::try_from(index).ok()?).copied()
+fn at<T: Copy>(items: &[T], index: u32) -> Option<T> {
+    items.get(index as usize).copied()
 }
 
 /// `None` for a vector without a direction: zero or not finite.

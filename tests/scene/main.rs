@@ -91,6 +91,8 @@ fn file(name: &str, content: impl AsRef<[u8]>) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scene");
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join(name);
+    // Ext4 writes a file that is truncated and written again to the disk at once.
+    _ = std::fs::remove_file(&path);
     std::fs::write(&path, content).unwrap();
     path
 }

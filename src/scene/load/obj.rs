@@ -1,12 +1,14 @@
-//! Wavefront OBJ: polygons with optional normals, grouped by object or group and material.
+//! Wavefront OBJ as the `tobj` crate reads it: a mesh for each group and run of one material.
 
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::cell::RefCell;
+use std::fmt::Display;
+use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use earcut::{Earcut, deviation, utils3d::project3d_to_2d};
+use glam::Vec3;
+use tobj::{LoadOptions, MTLLoadResult, Material, Model};
 
-use super::polygon::triangulate;
-use super::{Corner, Draft, Triangle, albedo, at, malformed};
+use super::{Corner, Draft, albedo, malformed};
 use crate::scene::{Scene, SceneError};
 
 /// Of faces without a material: a light grey.
@@ -14,177 +16,155 @@ const DEFAULT_ALBEDO: Vec3 = Vec3::splat(0.8);
 
 /// Adds the file's meshes and warnings to the scene; returns what it found, in words.
 pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<String, SceneError> {
-    let mut file =
-        File { folder: path.parent().unwrap_or(Path::new("")).into(), ..File::default() };
-    // Names and comments may be in any encoding.
-    let text = String::from_utf8_lossy(bytes);
-    let mut statement = String::new();
-    // The empty last line ends a statement that the file's last line leaves open.
-    for (number, line) in (1..).zip(text.lines().chain([""])) {
-        if let Some(continued) = line.strip_suffix('\\') {
-            statement.push_str(continued);
-            statement.push(' ');
-            continue;
+    let warnings = &mut scene.warnings;
+    let text = clean(bytes);
+    // `tobj` would make faces of lines, and check texture coordinates, which nobody needs.
+    let mut not_faces = statements(&text, &["l", "p"]).lines().count();
+    let used = ["v", "vn", "f", "o", "g", "usemtl", "mtllib"];
+    let (models, materials) = load(path, &statements(&text, &used), warnings)?;
+
+    let (mut faces, mut crossing) = (0, 0);
+    for Model { mut mesh, name } in models {
+        if mesh.face_arities.is_empty() {
+            mesh.face_arities = vec![3; mesh.indices.len() / 3];
         }
-        statement.push_str(line);
-        file.statement(statement.trim())
-            .ok_or_else(|| malformed(path, format!("cannot read line {number}: `{line}`")))?;
-        statement.clear();
+        let positions = vectors(&mesh.positions);
+        let mut normals = vectors(&mesh.normals);
+        // `tobj` leaves no gap for a missing normal, so nobody knows whose the others are.
+        if !normals.is_empty() && normals.len() != positions.len() {
+            normals.clear();
+            let what = "some corners have no normal, so all got their face's";
+            warnings.push(format!("mesh `{name}`: {what}"));
+        }
+        let corner =
+            |position| Corner { position, normal: (!normals.is_empty()).then_some(position) };
+        let mut triangles = Vec::new();
+        let mut rest = &mesh.indices[..];
+        for &arity in &mesh.face_arities {
+            let (face, others) = rest.split_at(arity as usize);
+            rest = others;
+            if arity < 3 {
+                not_faces += 1;
+                continue;
+            }
+            faces += 1;
+            let points: Vec<Vec3> = face.iter().map(|&i| positions[i as usize]).collect();
+            let (cut, covered) = triangulate(&points);
+            crossing += usize::from(!covered);
+            triangles.extend(cut.into_iter().map(|t| t.map(|i| corner(face[i]))));
+        }
+        let material = mesh.material_id.map(|i| &materials[i]);
+        let draft = Draft {
+            name: material.map_or(name.clone(), |material| format!("{name}/{}", material.name)),
+            positions: &positions,
+            normals: &normals,
+            triangles,
+            albedo: material.and_then(|material| material.diffuse).map_or(DEFAULT_ALBEDO, albedo),
+        };
+        scene.meshes.extend(draft.finish(warnings));
     }
-    file.finish(scene)
+    let mut counted = |count: usize, what: &str| {
+        if count > 0 {
+            warnings.push(format!("{count} {what}"));
+        }
+    };
+    counted(not_faces, "points, lines or faces of fewer than three corners skipped");
+    counted(crossing, "polygons cross themselves or have no area, and may be covered wrongly");
+    Ok(format!("{faces} faces"))
 }
 
-/// A group's and a material's name: the faces that share both are a mesh.
-type Key = (String, String);
-
-#[derive(Default)]
-struct File {
-    folder: PathBuf,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
-    /// In order of appearance.
-    meshes: Vec<(Key, Vec<Triangle>)>,
-    index_of: HashMap<Key, usize>,
-    /// Of the faces to come.
-    current: Key,
-    albedo_of: HashMap<String, Vec3>,
-    warnings: Vec<String>,
-    faces: usize,
-    not_faces: usize,
-    crossing: usize,
+fn load(
+    path: &Path,
+    text: &str,
+    warnings: &mut Vec<String>,
+) -> Result<(Vec<Model>, Vec<Material>), SceneError> {
+    let options = LoadOptions {
+        // With indices of their own, normals that are missing would be the previous corner's.
+        single_index: true,
+        ..LoadOptions::default()
+    };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let warnings = RefCell::new(warnings);
+    let mut rest = text.as_bytes();
+    let loaded = tobj::load_obj_buf(&mut rest, &options, |names| {
+        libraries(folder, &names.to_string_lossy(), &mut warnings.borrow_mut())
+    });
+    let (models, materials) = loaded.map_err(|error| {
+        // The last line that `tobj` has read; it checks indices at the end of a mesh only.
+        let read = &text[..text.len() - rest.len()];
+        let line = read.lines().next_back().unwrap_or_default();
+        malformed(path, format!("{error}, at or before the line `{line}`"))
+    })?;
+    Ok((models, materials.unwrap_or_default()))
 }
 
-impl File {
-    /// `None` if the statement cannot be read. Statements about anything else are passed over.
-    fn statement(&mut self, text: &str) -> Option<()> {
-        let (keyword, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-        let rest = rest.trim();
-        match keyword {
-            "v" => self.positions.push(vector(rest)?),
-            "vn" => self.normals.push(vector(rest)?),
-            "f" => self.face(rest)?,
-            "l" | "p" => self.not_faces += 1,
-            "o" | "g" => self.current.0 = rest.into(),
-            "usemtl" => self.current.1 = rest.into(),
-            "mtllib" => self.libraries(rest),
-            _ => {}
-        }
-        Some(())
-    }
-
-    fn face(&mut self, rest: &str) -> Option<()> {
-        let corners: Option<Vec<Corner>> =
-            rest.split_whitespace().map(|text| self.corner(text)).collect();
-        let corners = corners?;
-        if corners.len() < 3 {
-            self.not_faces += 1;
-            return Some(());
-        }
-        self.faces += 1;
-        let triangles = self.triangulated(&corners);
-        let index = match self.index_of.get(&self.current) {
-            Some(index) => *index,
-            None => {
-                self.index_of.insert(self.current.clone(), self.meshes.len());
-                self.meshes.push((self.current.clone(), Vec::new()));
-                self.meshes.len() - 1
-            }
-        };
-        let triangles = triangles.into_iter().map(|t| t.map(|i| corners[i]));
-        self.meshes[index].1.extend(triangles);
-        Some(())
-    }
-
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; one is the first, negative counts from the last.
-    fn corner(&self, text: &str) -> Option<Corner> {
-        let index = |text: &str, count: usize| {
-            let number: i64 = text.parse().ok()?;
-            Some(if number < 0 { count as i64 + number } else { number - 1 })
-        };
-        let mut fields = text.split('/');
-        let position = index(fields.next()?, self.positions.len())?;
-        let normal = match fields.nth(1) {
-            None | Some("") => None,
-            Some(text) => Some(index(text, self.normals.len())?),
-        };
-        Some(Corner { position, normal })
-    }
-
-    /// Corner numbers of the triangles that cover the face.
-    fn triangulated(&mut self, corners: &[Corner]) -> Vec<[usize; 3]> {
-        // A polygon with a corner that is missing or infinite will be dropped: any cut will do.
-        let points = corners.iter().map(|corner| {
-            let point = at(&self.positions, corner.position);
-            point.filter(|p| p.is_finite()).unwrap_or_default()
-        });
-        let points: Vec<DVec3> = points.map(|p| p.as_dvec3()).collect();
-        let (triangles, simple) = triangulate(&points);
-        self.crossing += usize::from(!simple);
-        triangles
-    }
-
-    /// `mtllib` names one file, possibly with spaces in it, or several.
-    fn libraries(&mut self, rest: &str) {
-        let names: Vec<&str> = if self.folder.join(rest).exists() {
-            vec![rest]
-        } else {
-            rest.split_whitespace().collect()
-        };
-        for name in names {
-            match std::fs::read(self.folder.join(name)) {
-                Ok(bytes) => self.materials(&String::from_utf8_lossy(&bytes)),
-                Err(error) => self.warnings.push(format!(
-                    "material library `{name}` cannot be read ({error}): its materials are grey"
-                )),
-            }
+/// The names and diffuse colours of the one file, possibly with spaces in its name, or several.
+fn libraries(folder: &Path, names: &str, warnings: &mut Vec<String>) -> MTLLoadResult {
+    let mut warn = |name: &str, error: &dyn Display| {
+        warnings.push(format!(
+            "material library `{name}` cannot be read ({error}): its materials are grey"
+        ));
+    };
+    let files = match folder.join(names).exists() {
+        true => vec![names],
+        false => names.split_whitespace().collect(),
+    };
+    let mut text = String::new();
+    for name in files {
+        match std::fs::read(folder.join(name)) {
+            Ok(bytes) => text += &statements(&clean(&bytes), &["newmtl", "Kd"]),
+            Err(error) => warn(name, &error),
         }
     }
-
-    /// The diffuse colours; a single number is a grey.
-    fn materials(&mut self, text: &str) {
-        let mut name = "";
-        for line in text.lines() {
-            let (keyword, rest) = line.trim().split_once(char::is_whitespace).unwrap_or_default();
-            let numbers: Vec<f32> = rest.split_whitespace().map_while(|n| n.parse().ok()).collect();
-            match (keyword, &numbers[..]) {
-                ("newmtl", _) => name = rest.trim(),
-                ("Kd", &[r, g, b, ..]) => _ = self.albedo_of.insert(name.into(), albedo([r, g, b])),
-                ("Kd", &[grey, ..]) => _ = self.albedo_of.insert(name.into(), albedo([grey; 3])),
-                _ => {}
-            }
-        }
-    }
-
-    fn finish(self, scene: &mut Scene) -> Result<String, SceneError> {
-        scene.warnings = self.warnings;
-        let mut counted = |count: usize, what: &str| {
-            if count > 0 {
-                scene.warnings.push(format!("{count} {what}"));
-            }
-        };
-        counted(self.not_faces, "points, lines or faces of fewer than three corners skipped");
-        counted(self.crossing, "polygons cross themselves and may be covered wrongly");
-        let found = format!("{} vertices and {} faces", self.positions.len(), self.faces);
-        for ((group, material), triangles) in self.meshes {
-            let names = [group.as_str(), material.as_str()];
-            let named: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
-            let draft = Draft {
-                name: if named.is_empty() { "unnamed".into() } else { named.join("/") },
-                positions: &self.positions,
-                normals: &self.normals,
-                triangles,
-                albedo: self.albedo_of.get(&material).copied().unwrap_or(DEFAULT_ALBEDO),
-                first_index: 1,
-            };
-            scene.meshes.extend(draft.finish(&mut scene.warnings));
-        }
-        Ok(found)
-    }
+    // `tobj` panics for a colour of fewer than three numbers, as a grey is, and ignores a fourth.
+    let lines = text.lines().map(|line| match line.split_whitespace().next_back() {
+        Some(last) if line.starts_with("Kd") => format!("{line} {last} {last}\n"),
+        _ => format!("{line}\n"),
+    });
+    let text: String = lines.collect();
+    tobj::load_mtl_buf(&mut text.as_bytes()).inspect_err(|error| warn(names, error))
 }
 
-/// The first three numbers; more are a weight or a colour.
-fn vector(text: &str) -> Option<Vec3> {
-    let mut numbers = text.split_whitespace().map(|number| number.parse().ok());
-    let mut next = || numbers.next().flatten();
-    Some(Vec3::new(next()?, next()?, next()?))
+/// Statements one a line, as `tobj` wants them: it knows no continued lines, and takes
+/// indentation and tabs for parts of names. Names may be in any encoding.
+fn clean(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
+    text.replace("\\\n", " ").replace('\t', " ")
+}
+
+/// Those of some kinds.
+fn statements(text: &str, keywords: &[&str]) -> String {
+    let lines = text.lines().map(str::trim);
+    let kept = lines.filter(|line| {
+        let keyword = line.split_whitespace().next();
+        keyword.is_some_and(|keyword| keywords.contains(&keyword))
+    });
+    kept.flat_map(|line| [line, "\n"]).collect()
+}
+
+/// Corner numbers of triangles that wind like the polygon, and whether they cover it once.
+fn triangulate(polygon: &[Vec3]) -> (Vec<[usize; 3]>, bool) {
+    /// Of the areas, relative. Polygons that cross themselves are far beyond it.
+    const MAX_DEVIATION: f64 = 1e-6;
+    let corners = polygon.len();
+    let fan = || (2..corners).map(|i| [0, i - 1, i]).collect();
+    // What is not finite will be dropped: any cut will do.
+    if corners == 3 || !polygon.iter().all(|point| point.is_finite()) {
+        return (fan(), true);
+    }
+    let points = polygon.iter().map(|point| point.as_dvec3().to_array());
+    let points: Vec<[f64; 3]> = points.collect();
+    let (mut flat, mut cut) = (Vec::new(), Vec::new());
+    if !project3d_to_2d(&points, corners, &mut flat) {
+        return (fan(), false);
+    }
+    Earcut::new().earcut_slice(&flat, &[], &mut cut);
+    if deviation(flat, &[], &cut) > MAX_DEVIATION {
+        return (fan(), false);
+    }
+    (cut.as_chunks().0.to_vec(), true)
+}
+
+fn vectors(numbers: &[f32]) -> Vec<Vec3> {
+    numbers.chunks_exact(3).map(Vec3::from_slice).collect()
 }

@@ -45,11 +45,11 @@ pub(super) fn mesh(
 
     let integers = [DataType::U8, DataType::U16, DataType::U32];
     check("indices", primitive.indices(), (Dimensions::Scalar, &integers))?;
-    let indices: Vec<i64> = match primitive.indices() {
-        None => (0..positions.len() as i64).collect(),
+    let indices: Vec<u32> = match primitive.indices() {
+        None => (0..positions.len() as u32).collect(),
         Some(_) => {
             let indices = reader.read_indices().ok_or_else(|| outside("indices"))?;
-            indices.into_u32().map(i64::from).collect()
+            indices.into_u32().collect()
         }
     };
 
@@ -65,7 +65,6 @@ pub(super) fn mesh(
             .map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }.map(corner))
             .collect(),
         albedo: albedo([r, g, b]),
-        first_index: 0,
     };
     Ok(draft.finish(warnings))
 }
@@ -96,7 +95,7 @@ fn check(
 }
 
 /// Indices of each triangle, as glTF 2.0 numbers them (3.7.2.1).
-fn triangles(mode: Mode, indices: &[i64]) -> Vec<[i64; 3]> {
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::TriangleStrip => indices
             .windows(3)
