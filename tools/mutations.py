@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""Applies deliberate mistakes one at a time and checks that the named test catches each.
+
+Run from a clean checkout: it changes files under src/ and wgsl/ and puts them back.
+    tools/mutations.py [PART OF A TEST'S NAME]
+"""
+
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# file, right, wrong, test file, test
+PORT = "src/scalar/"
+MUTATIONS = [
+    ("hemisphere.rs", "DPSM_FRONT, p.z >= T::lit(0.0)", "DPSM_FRONT, p.z > T::lit(0.0)",
+     "hemisphere", "seam_itself_is_in_front_with_either_sign_of_zero"),
+    ("hemisphere.rs", "select(p.z, -p.z, hemisphere == DPSM_BACK)", "p.z",
+     "hemisphere", "flip_mirrors_the_back_alone_and_undoes_itself"),
+    ("hemisphere.rs", "    uv / square\n", "    uv * (T::lit(2.0) / square.sqrt() - T::lit(1.0))\n",
+     "hemisphere", "inversion_is_the_same_direction_in_the_other_map"),
+    ("hemisphere.rs", "    uv / square\n", "    uv * (T::lit(1.00001) / square)\n",
+     "hemisphere", "inversion_is_the_same_direction_in_the_other_map"),
+    ("hemisphere.rs", "if square <= T::lit(1.0 / (DPSM_POLE_RADIUS * DPSM_POLE_RADIUS))",
+     "if square < T::lit(0.0)", "hemisphere", "centre_goes_to_the_other_pole"),
+    ("hemisphere.rs", "let p = world - light.position;",
+     "let p = world - light.position + light.right * T::lit(1e-5);",
+     "hemisphere", "light_space_stays_within_its_bound_far_from_the_origin"),
+    ("hemisphere.rs",
+     "    let p = world - light.position;\n    Vec3::new(light.right.dot(p), light.up.dot(p), light.forward.dot(p))",
+     "    let r = |row: Vec3<T>| row.dot(world) - row.dot(light.position);\n    Vec3::new(r(light.right), r(light.up), r(light.forward))",
+     "hemisphere", "light_space_stays_within_its_bound_far_from_the_origin"),
+    ("hemisphere.rs", "light.right.dot(p), light.up.dot(p)", "light.up.dot(p), light.right.dot(p)",
+     "hemisphere", "forward_goes_to_the_front_pole_and_right_to_the_right"),
+    ("paraboloid.rs", "(p.length() + p.z.abs())", "(p.length() + p.z)",
+     "paraboloid", "project_stays_within_its_bound_over_its_whole_domain"),
+    ("paraboloid.rs", "    dpsm_invert(own)\n", "    p.xy() / (p.length() + p.z)\n",
+     "paraboloid", "project_stays_within_its_bound_over_its_whole_domain"),
+    ("paraboloid.rs", "    dpsm_invert(own)\n", "    own / own.dot(own)\n",
+     "paraboloid", "directions_near_the_back_pole_stay_within_one_rounding_of_it"),
+    ("paraboloid.rs", ".max(T::lit(DPSM_SMALLEST))", "",
+     "paraboloid", "light_position_and_back_pole_have_defined_results"),
+    ("paraboloid.rs", "uv.y + uv.y, one - square", "uv.y + uv.y, square - one",
+     "paraboloid", "unproject_takes_project_back_to_the_direction"),
+    ("paraboloid.rs", "Vec3::new(uv.x + uv.x, uv.y + uv.y, one - square) / (one + square)",
+     "{ let d = Vec3::new(uv.x + uv.x, uv.y + uv.y, one - square); let k = one / d.length(); d * k * (one + T::lit(1e-6)) }",
+     "paraboloid", "unproject_stays_within_its_bound"),
+    ("paraboloid.rs", "T::lit(4.0) * (T::lit(1.0) + guard)", "T::lit(4.0)",
+     "paraboloid", "texel_pitch_is_the_angle_across_a_texel_in_both_directions"),
+    ("paraboloid.rs", "size + size * uv.dot(uv)", "size + size * uv.length()",
+     "paraboloid", "texel_pitch_is_the_angle_across_a_texel_in_both_directions"),
+    ("paraboloid.rs", "    pitch * pitch\n", "    pitch\n",
+     "paraboloid", "solid_angles_of_a_hemisphere_add_up_to_half_the_sphere"),
+    ("paraboloid.rs", "Vec2::new(uv.x, -uv.y) * half", "uv * half",
+     "paraboloid", "stored_disk_fills_the_texture_and_y_points_down"),
+    ("paraboloid.rs", " * half / (T::lit(1.0) + guard)", " * half",
+     "paraboloid", "stored_disk_fills_the_texture_and_y_points_down"),
+    ("paraboloid.rs", "Vec2::new(T::lit(2.0), T::lit(-2.0)) * (T::lit(1.0) + guard)",
+     "Vec2::new(T::lit(2.0), T::lit(-2.0))",
+     "paraboloid", "texture_coordinates_and_back_stay_within_their_bounds"),
+    ("light.rs", "    pub near: T,\n    /// Light space's +x in world space; right, up, forward are orthonormal.\n    pub right: Vec3<T>,",
+     "    pub right: Vec3<T>,\n    /// Moved.\n    pub near: T,",
+     "light", "layout_is_the_same_in_rust_and_in_the_shader"),
+    ("light.rs", "select(hemisphere, 0, light.placement == DPSM_ATLAS)", "hemisphere",
+     "light", "layers_hold_one_hemisphere_each_and_an_atlas_holds_both"),
+    ("light.rs", "(st + beside) * light.rectangle.zw()", "st * light.rectangle.zw()",
+     "light", "back_map_begins_in_an_atlas_where_the_front_map_ends"),
+    ("depth.rs", "(l - near) / (far - near)", "l / far",
+     "depth", "spheres_store_zero_and_one_exactly"),
+    ("depth.rs", "(l - near) / (far - near)", "(l - near) * (T::lit(1.0) / (far - near))",
+     "depth", "spheres_store_zero_and_one_exactly"),
+    ("depth.rs", "near + depth * (far - near)", "depth * (far - near)",
+     "depth", "distance_of_a_depth_is_the_distance_again"),
+    ("depth.rs", "l >= near && l <= far", "l > near && l < far",
+     "depth", "both_spheres_are_within"),
+    ("depth.rs", ".clamp(T::lit(0.0), T::lit(1.0))", "",
+     "depth", "receivers_outside_the_spheres_compare_at_the_spheres"),
+    ("caster.rs", "(one - square) / (one + square)", "T::lit(0.0) * square",
+     "caster", "border_is_the_height_of_the_guard_bands_edge"),
+    ("caster.rs", "dpsm_project(p) / (T::lit(1.0) + light.guard)", "dpsm_project(p)",
+     "caster", "stored_disk_ends_at_the_guard_band"),
+    ("caster.rs", "p.z >= l * dpsm_caster_border(light.guard)", "p.z >= T::lit(0.0)",
+     "caster", "stored_disk_ends_at_the_guard_band"),
+    ("caster.rs", "hemisphere_value >= T::lit(0.5)", "hemisphere_value > T::lit(0.5)",
+     "caster", "without_a_guard_band_the_seam_is_kept_on_both_sides"),
+    ("caster.rs", "inside && dpsm_within(l, light.near, light.far)", "inside",
+     "caster", "fragments_outside_the_clipping_spheres_are_discarded"),
+    ("caster.rs", "let depth = dpsm_depth(l, light.near, light.far) + bias;",
+     "let depth = dpsm_depth(l, light.near, light.far) - bias;",
+     "caster", "bias_moves_the_stored_depth_away_from_the_light"),
+    ("visibility.rs", "let disk = dpsm_project(dpsm_flip(p, hemisphere));", "let disk = dpsm_project(p);",
+     "visibility", "points_behind_the_cap_are_in_shadow_and_no_others"),
+    ("visibility.rs", "layer: dpsm_light_layer(light, hemisphere)",
+     "layer: dpsm_light_layer(light, 1 - hemisphere)",
+     "visibility", "points_behind_the_cap_are_in_shadow_and_no_others"),
+    ("visibility.rs", "dpsm_disk_to_texture(disk, light.guard)", "dpsm_disk_to_texture(disk, T::lit(0.0))",
+     "visibility", "points_behind_the_cap_are_in_shadow_and_no_others"),
+    ("visibility.rs", "select(T::lit(0.0), lit, at.mapped)", "lit",
+     "visibility", "back_of_a_hemispherical_light_is_always_in_shadow"),
+    ("visibility.rs", "at.depth - bias);", "at.depth + bias);",
+     "visibility", "equal_depth_is_lit_and_one_float_less_in_the_map_is_shadow"),
+    ("maps.rs", "reference <= stored", "reference < stored",
+     "visibility", "equal_depth_is_lit_and_one_float_less_in_the_map_is_shadow"),
+    ("visibility.rs", "dpsm_receiver_depth(p.length(), light.near, light.far)",
+     "dpsm_depth(p.length(), light.near, light.far)",
+     "visibility", "empty_maps_shadow_nothing_even_beyond_far"),
+    ("visibility.rs", "back: dpsm_disk_to_texture(back, light.guard)",
+     "back: dpsm_disk_to_texture(front, light.guard)",
+     "visibility", "lookup_by_vertex_is_the_lookup_by_pixel_at_the_vertices"),
+    ("maps.rs", "let (x, y) = (x - 0.5, y - 0.5);", "",
+     "visibility", "linear_sampling_weighs_the_four_comparisons"),
+    ("shade.rs", "ambient + (diffuse + specular) * visibility", "(ambient + diffuse + specular) * visibility",
+     "shade", "shadow_leaves_the_ambient_light_alone"),
+    ("shade.rs", "normal.dot(to_light).max(T::lit(0.0))", "normal.dot(to_light)",
+     "shade", "surfaces_that_face_away_catch_no_light"),
+    ("shade.rs", "    sixteenth * sixteenth\n", "    sixteenth\n",
+     "shade", "highlight_is_the_32nd_power_of_the_halfway_cosine"),
+    # the modules and the host, on an adapter
+    ("wgsl/paraboloid.wesl", "return dpsm_invert(own);", "return p.xy / (length(p) + p.z);",
+     "adapter", "every_function_agrees_with_its_port"),
+    ("wgsl/caster.wesl", "fn dpsm_caster_border", "fn dpsm_caster_edge",
+     "adapter", "ports_and_modules_declare_the_same_functions_in_the_same_order"),
+    ("wgsl/visibility.wesl", "at.depth - bias);", "at.depth + bias);",
+     "adapter", "sampling_functions_agree_with_their_ports"),
+    ("src/gpu/evaluate.rs", "*word += 1;", "*word += 1; if *word == 8 { *word = 7; }",
+     "adapter", "values_far_apart_in_one_struct_keep_their_places"),
+    ("src/gpu/texels.wesl", "id.z * size.y + id.y", "id.z * size.y + size.y - 1u - id.y",
+     "adapter", "depths_survive_upload_and_download_in_each_format"),
+    ("src/gpu/caster.wesl", "let p = dpsm_flip(dpsm_to_light(position, caster.light), hemisphere);\n    let v = dpsm_caster_vertex(p, caster.light, caster.bias);\n    return VertexMethod",
+     "let p = dpsm_flip(dpsm_to_light(position, caster.light), 1u - hemisphere);\n    let v = dpsm_caster_vertex(p, caster.light, caster.bias);\n    return VertexMethod",
+     "render", "adapter_renders_what_the_ports_render"),
+    ("src/gpu/camera.wesl", "fn pixel_lookup(v: Vertex) -> Surface {\n    let p = dpsm_to_light(v.position, camera.light);",
+     "fn pixel_lookup(v: Vertex) -> Surface {\n    let p = dpsm_to_light(v.position, camera.light).yxz;",
+     "render", "adapter_renders_what_the_ports_render"),
+    ("src/render.rs", "guard: guard_band(settings.size),", "guard: 0.2,",
+     "render", "ports_render_the_committed_pictures"),
+    ("src/cpu/mod.rs", "if keep && (0.0..=1.0).contains(&depth)", "if (0.0..=1.0).contains(&depth)",
+     "render", "closed_room_fills_both_maps_and_nothing_outside_their_disks"),
+]
+
+
+def caught(test_file, test):
+    """True when the test runs and fails; a mistake that does not compile proves nothing."""
+    features = [] if test_file in ("adapter", "render", "light") else ["--no-default-features"]
+    command = ["cargo", "test", "--quiet", *features, "--test", test_file, "--", "--exact", test]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    return run.returncode != 0 and "1 failed" in run.stdout + run.stderr
+
+
+def main():
+    part = sys.argv[1] if len(sys.argv) > 1 else ""
+    chosen = [m for m in MUTATIONS if part in m[4]]
+    survived = 0
+    for file, right, wrong, test_file, test in chosen:
+        path = ROOT / (file if "/" in file else PORT + file)
+        text = path.read_text()
+        if right not in text:
+            print(f"STALE     {path.name}: {right!r} is not there")
+            survived += 1
+            continue
+        try:
+            path.write_text(text.replace(right, wrong))
+            if caught(test_file, test):
+                print(f"caught    {path.name}: {test}", flush=True)
+            else:
+                print(f"SURVIVED  {path.name}: {wrong!r} was not caught by {test}", flush=True)
+                survived += 1
+        finally:
+            path.write_text(text)
+    print(f"{len(chosen) - survived} of {len(chosen)} mistakes caught")
+    sys.exit(1 if survived else 0)
+
+
+main()
