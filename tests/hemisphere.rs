@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{CASES, EPS, Widen, Worst, point, rng, widen_light};
+use common::{CASES, EPS, EPS_DOUBLE, Widen, Worst, angle, point, rng, widen_light};
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::hemisphere::*;
-use dpsm::scalar::paraboloid::dpsm_project;
+use dpsm::scalar::light::DpsmLight;
+use dpsm::scalar::paraboloid::{dpsm_project, dpsm_unproject};
 
 #[test]
 fn seam_itself_is_in_front_with_either_sign_of_zero() {
@@ -28,14 +29,13 @@ fn inversion_is_the_same_direction_in_the_other_map() {
     let mut worst = Worst::default();
     for _ in 0..CASES {
         let p = point(&mut rng, -8, 8).widen();
-        let front = dpsm_project(p);
-        let other = dpsm_project(dpsm_flip(p, DPSM_BACK));
-        let crossed = dpsm_invert(front);
-        // each side projects (20 eps at most) and one inverts (5.5 eps, and carries 20 over)
-        let bound = (20.0 + 5.5 + 20.0) * f64::EPSILON * other.length();
-        worst.note((crossed - other).length(), bound, p);
+        let crossed = dpsm_unproject(dpsm_invert(dpsm_project(p)));
+        // relative errors in uv are at most as many radians: 20 eps to project, 5.5 to invert;
+        // 5.5 eps a component to come back
+        let bound = (25.5 + 5.5 * 3.0_f64.sqrt()) * EPS_DOUBLE;
+        worst.note(angle(dpsm_flip(crossed, DPSM_BACK), p), bound, p);
     }
-    worst.check("dpsm_invert against dpsm_project of the flipped point");
+    worst.check("direction after dpsm_invert, radians");
 }
 
 #[test]
@@ -83,12 +83,25 @@ fn light_space_stays_within_its_bound_far_from_the_origin() {
 }
 
 #[test]
-fn forward_goes_to_the_front_pole_and_right_to_the_right() {
-    let light = dpsm::cases::light(0);
-    let p = dpsm_to_light(light.position + light.forward * 2.0, light);
-    // 4 eps times the distance, and as much for the struct's own rounded rotation
-    let close = |a: f32, b: f32| f64::from((a - b).abs()) <= 8.0 * 100.0 * EPS;
-    assert!(close(p.x, 0.0) && close(p.y, 0.0) && close(p.z, 2.0), "{p:?}");
-    let p = dpsm_to_light(light.position + light.right, light);
-    assert!(close(p.x, 1.0) && close(p.y, 0.0) && close(p.z, 0.0), "{p:?}");
+fn light_space_is_a_rotation_about_the_light() {
+    let mut rng = rng("rotation");
+    let third = 1.0 / 3.0;
+    let light = DpsmLight {
+        right: Vec3::new(2.0 * third, 2.0 * third, -third),
+        up: Vec3::new(-third, 2.0 * third, 2.0 * third),
+        forward: Vec3::new(2.0 * third, -third, 2.0 * third),
+        ..widen_light(dpsm::cases::light(0))
+    };
+    let mut worst = Worst::default();
+    for _ in 0..CASES {
+        let d = point(&mut rng, -4, 4).widen();
+        let p = dpsm_to_light(light.position + d, light);
+        // the world point's own rounding, eps / 2 of its length, and the function's 4 eps
+        let reach = (light.position + d).length();
+        let bound = EPS_DOUBLE * (0.5 * reach + 4.0 * d.length());
+        for (value, row) in [(p.x, light.right), (p.y, light.up), (p.z, light.forward)] {
+            worst.note((value - row.dot(d)).abs(), bound, d);
+        }
+    }
+    worst.check("dpsm_to_light, rotation");
 }

@@ -16,7 +16,7 @@ const SIDE: u32 = 192;
 fn frame(name: &str, settings: Settings) -> Frame {
     let scene = scene::open(name, &Options::default()).unwrap();
     let light = scene.default_light();
-    let camera = scene.default_camera(light.position);
+    let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
     let axis = light.axis.unwrap_or(Vec3::NEG_Y);
     Frame::new(&scene, light.position, axis, light.axis.is_some(), &camera, settings).unwrap()
 }
@@ -193,7 +193,7 @@ fn hemispherical_light_makes_one_map_and_leaves_its_back_dark() {
 fn settings_that_do_not_fit_are_refused_with_the_remedy() {
     let scene = scene::open("cornell", &Options::default()).unwrap();
     let light = scene.default_light().position;
-    let camera = scene.default_camera(light);
+    let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light));
     let make = |position, settings| {
         Frame::new(&scene, position, Vec3::NEG_Y, false, &camera, settings).unwrap_err().to_string()
     };

@@ -140,7 +140,7 @@ pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
     for name in ["brabec-room", "brabec-ceiling"] {
         let scene = scene::open(name, &Options::default())?;
         let light = scene.default_light();
-        let camera = scene.default_camera(light.position);
+        let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
         // 512 x 512 maps and picture, as in the paper's section 5
         let settings =
             Settings { size: 512, image: [512, 512], views: true, ..Settings::default() };
@@ -188,7 +188,7 @@ pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(),
         light.axis = Some(light.axis.unwrap_or(Vec3::NEG_Y));
     }
     let axis = arguments.axis.or(light.axis).unwrap_or(Vec3::NEG_Y);
-    let mut camera = scene.default_camera(light.position);
+    let mut camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
     camera.eye = arguments.camera.unwrap_or(camera.eye);
     camera.target = arguments.look_at.unwrap_or(camera.target);
     let device = adapter.open()?;
