@@ -76,7 +76,7 @@ pub struct Settings {
     pub near: Option<f32>,
     /// Far sphere's radius; by default just beyond the farthest vertex.
     pub far: Option<f32>,
-    /// Constant bias in units of depth; by default `constant_bias`.
+    /// Constant bias in units of depth, at the receiver; by default `constant_bias`.
     pub bias: Option<f32>,
     /// Also render what the light sees of each hemisphere.
     pub views: bool,
@@ -145,7 +145,7 @@ pub struct Frame {
     pub light: DpsmLight<f32>,
     /// The light's linear colour.
     pub color: Vec3,
-    /// Constant bias in units of depth.
+    /// Constant bias in units of depth, at the receiver.
     pub bias: f32,
     /// The camera.
     pub view: View,
@@ -278,7 +278,7 @@ impl Frame {
         }
         let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
         let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
-        let far = settings.far.unwrap_or(reach / (1.0 - bias) * FAR_SLACK);
+        let far = settings.far.unwrap_or(reach * FAR_SLACK);
         let near = settings.near.unwrap_or(far * NEAR_SHARE);
         if !(near > 0.0 && near < far && far.is_finite()) {
             return Err(FrameError::Spheres { near, far });

@@ -65,12 +65,15 @@ fn vector([x, y, z]: [f32; 3]) -> scalar::Vec3<f32> {
     scalar::Vec3::new(x, y, z)
 }
 
+/// The maps store true distances; the bias is the receiver's, so that it may differ by receiver.
+const NO_BIAS: f32 = 0.0;
+
 /// One hemisphere's map: stored depths of all casters.
 fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
-    let Frame { light, bias, settings, .. } = frame;
+    let Frame { light, settings, .. } = frame;
     let place = |vertex: &Vertex| {
         let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
-        (p, dpsm_caster_vertex(p, *light, *bias))
+        (p, dpsm_caster_vertex(p, *light, NO_BIAS))
     };
     let placed: Vec<_> = frame.vertices.iter().map(place).collect();
     for corners in &frame.triangles {
@@ -85,7 +88,7 @@ fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
                 }
                 Method::FragmentDepth => {
                     let p = vector(mix(fragment.weights, corners, |(p, _)| words(p)));
-                    let stored = dpsm_caster_fragment(p, *light, *bias);
+                    let stored = dpsm_caster_fragment(p, *light, NO_BIAS);
                     (stored.keep, stored.depth)
                 }
             };
@@ -203,7 +206,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
     color(&seen, settings.image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let visibility = match settings.lookup {
-            Lookup::Pixel => dpsm_visibility(maps, surface.p, *light, 0.0),
+            Lookup::Pixel => dpsm_visibility(maps, surface.p, *light, frame.bias),
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
@@ -212,7 +215,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
                 });
                 let (front, back) = (Vec2::new(fx, fy), Vec2::new(bx, by));
                 let at = DpsmReceiverVertex { front, back, depth, hemisphere_value };
-                dpsm_visibility_vertex(maps, at, *light, 0.0)
+                dpsm_visibility_vertex(maps, at, *light, frame.bias)
             }
         };
         surface.shade(frame, eye, visibility)
@@ -237,7 +240,7 @@ fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
     });
     color(&seen, image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
-        let visibility = dpsm_visibility(maps, surface.p, *light, 0.0);
+        let visibility = dpsm_visibility(maps, surface.p, *light, frame.bias);
         surface.shade(frame, vector([0.0; 3]), visibility)
     })
 }

@@ -80,6 +80,7 @@ impl<'a> Camera<'a> {
         let row = |(v, last): (glam::Vec3, f32)| [v.x, v.y, v.z, last].map(f32::to_bits);
         let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
         words.extend(light_words(&frame.light));
+        words.extend([frame.bias.to_bits(), 0, 0, 0]);
         let uniform = uniform_buffer(device, &words)?;
         let sampler = comparison_sampler(device, Sampling::Nearest)?;
         Ok(Self { module, uniform, sampler, maps })

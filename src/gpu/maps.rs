@@ -90,9 +90,7 @@ impl ShadowMaps {
             Method::FragmentDepth => ("fragment_depth_method", "fragment_depth_method_fragment"),
         };
         let module = shader(device, "caster.wesl", include_str!("caster.wesl"))?;
-        let mut uniform = light_words(&frame.light);
-        uniform.extend([frame.bias.to_bits(), 0, 0, 0]);
-        let uniform = uniform_buffer(device, &uniform)?;
+        let uniform = uniform_buffer(device, &light_words(&frame.light))?;
         let pipeline = device.step("the map pipeline", || {
             device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("map"),

@@ -43,16 +43,17 @@ pub(super) fn build(name: &str, walls: u32) -> Result<Scene, SceneError> {
     })
 }
 
-const ROOM_MIN: Vec3 = vec3(-4.0, 0.0, -3.0);
-const ROOM_MAX: Vec3 = vec3(4.0, 4.0, 3.0);
+// A cube: with 8 x 8 quads a wall's quad nearest to the light is a quarter as wide as it is far.
+const ROOM_MIN: Vec3 = vec3(-2.0, 0.0, -2.0);
+const ROOM_MAX: Vec3 = vec3(2.0, 4.0, 2.0);
 
 /// In the +x +z corner: shows the floor, the -x and -z walls and the objects before them.
 fn room_camera() -> Camera {
     Camera {
-        eye: vec3(3.7, 2.7, 2.7),
-        target: vec3(-0.8, 1.2, -0.6),
+        eye: vec3(1.9, 3.0, 1.9),
+        target: vec3(-0.4, 1.5, -0.5),
         up: Vec3::Y,
-        vertical_fov: 65f32.to_radians(),
+        vertical_fov: 82f32.to_radians(),
     }
 }
 
@@ -86,18 +87,18 @@ fn room(walls: u32) -> Vec<Mesh> {
     let white = vec3(0.75, 0.75, 0.75);
     // Each solid in a fine and a coarse tessellation. Heights put the lowest point on the floor.
     meshes.extend([
-        revolve("sphere, fine", red, 64, &ball(0.55, 32)).placed(upright, vec3(-1.3, 0.55, -1.7)),
-        revolve("sphere, coarse", yellow, 10, &ball(0.4, 6)).placed(upright, vec3(0.6, 0.4, 1.7)),
-        revolve("column, fine", white, 48, &rod(0.3, 4.0)).placed(upright, vec3(-3.2, 0.0, -2.2)),
-        revolve("drum, coarse", green, 8, &rod(0.45, 0.8)).placed(upright, vec3(2.3, 0.0, -0.2)),
-        revolve("torus, fine, hanging", blue, 64, &ring(0.5, 0.16, 24))
-            .placed(tilted, vec3(-1.5, 3.0, 0.6)),
-        revolve("torus, coarse", yellow, 12, &ring(0.45, 0.15, 6))
-            .placed(upright, vec3(-1.9, 0.15, 1.9)),
-        revolve("sphere, coarse, hanging", green, 8, &ball(0.3, 5))
-            .placed(upright, vec3(1.3, 3.1, -1.2)),
-        cuboid("box", blue, vec3(1.1, 1.1, 1.1), 0.5).placed(upright, vec3(0.9, 0.0, -1.9)),
-        cuboid("box, tall", red, vec3(0.6, 1.9, 0.6), 0.3).placed(upright, vec3(-3.0, 0.0, 0.6)),
+        revolve("sphere, fine", red, 64, &ball(0.45, 32)).placed(upright, vec3(-0.7, 0.45, -1.2)),
+        revolve("sphere, coarse", yellow, 10, &ball(0.35, 6)).placed(upright, vec3(0.4, 0.35, 0.9)),
+        revolve("column, fine", white, 48, &rod(0.15, 4.0)).placed(upright, vec3(-1.7, 0.0, -1.6)),
+        revolve("drum, coarse", green, 8, &rod(0.35, 0.7)).placed(upright, vec3(1.4, 0.0, -0.1)),
+        revolve("torus, fine, hanging", blue, 64, &ring(0.4, 0.13, 24))
+            .placed(tilted, vec3(-0.9, 3.0, 0.4)),
+        revolve("torus, coarse", yellow, 12, &ring(0.35, 0.12, 6))
+            .placed(upright, vec3(-0.9, 0.12, 1.1)),
+        revolve("sphere, coarse, hanging", green, 8, &ball(0.25, 5))
+            .placed(upright, vec3(0.7, 3.1, -0.9)),
+        cuboid("box", blue, vec3(0.8, 0.8, 0.8), 0.5).placed(upright, vec3(0.7, 0.0, -1.3)),
+        cuboid("box, tall", red, vec3(0.45, 1.7, 0.45), 0.3).placed(upright, vec3(-1.5, 0.0, 0.4)),
     ]);
     meshes
 }

@@ -11,8 +11,8 @@ fn default_light_stands_above_the_geometry_or_is_the_scenes_first() {
     let mut scene = built_in("brabec-room", 1);
     assert_eq!(scene.default_light(), scene.lights[0]);
     scene.lights.clear();
-    // The room is 8 m long and 4 m high.
-    assert_eq!(scene.default_light().position, vec3(0.0, 4.0 + 8.0 / 2.0, 0.0));
+    // The room is a cube of 4 m.
+    assert_eq!(scene.default_light().position, vec3(0.0, 4.0 + 4.0 / 2.0, 0.0));
     assert_eq!(scene.default_light().axis, None);
 }
 
@@ -31,8 +31,8 @@ fn default_camera_outside_frames_the_bounding_sphere_from_the_lights_side() {
 #[test]
 fn default_camera_inside_stands_free_and_sees_the_light() {
     let mut scenes = vec![
-        (built_in("brabec-room", 1), Vec3::new(0.0, 2.0, 0.0), 3.0),
-        (built_in("brabec-room", 1), Vec3::new(3.5, 1.0, 0.5), 3.0),
+        (built_in("brabec-room", 1), Vec3::new(0.0, 2.0, 0.0), 2.0),
+        (built_in("brabec-room", 1), Vec3::new(1.2, 1.0, 0.6), 2.0),
     ];
     if let Some(sponza) = shared("sponza.obj") {
         scenes.push((sponza, Vec3::new(0.0, 4.0, 0.0), 20.0));
