@@ -20,6 +20,8 @@ pub mod cpu;
 pub mod gpu;
 #[cfg(feature = "naga")]
 pub mod link;
+#[cfg(feature = "scene")]
+pub mod measure;
 #[cfg(feature = "naga")]
 pub mod reflect;
 #[cfg(feature = "scene")]
@@ -27,6 +29,8 @@ pub mod render;
 pub mod scalar;
 #[cfg(feature = "scene")]
 pub mod scene;
+#[cfg(feature = "scene")]
+pub mod truth;
 pub mod ulp;
 #[cfg(feature = "naga")]
 pub mod validate;

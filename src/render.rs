@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use crate::scalar::float as scalar;
 use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
-use crate::scalar::maps::DepthMaps;
+use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{Camera, Scene};
 
 /// Storage of a depth map.
@@ -21,11 +21,11 @@ pub enum Format {
 }
 
 impl Format {
-    /// Largest difference between neighbouring stored values: 2^-16, 2^-24 or 0 (f32 itself).
+    /// Step of the stored values: 1 / 65535, 1 / 16777215, or 0 where f32 itself is stored.
     pub fn quantum(self) -> f32 {
         match self {
-            Format::D16 => 1.0 / 65536.0,
-            Format::D24 => 1.0 / 16777216.0,
+            Format::D16 => 1.0 / 65535.0,
+            Format::D24 => 1.0 / 16777215.0,
             Format::D32 => 0.0,
         }
     }
@@ -70,6 +70,8 @@ pub struct Settings {
     pub method: Method,
     /// How receivers look.
     pub lookup: Lookup,
+    /// How the maps are sampled: the hard test, or 2 x 2 comparisons.
+    pub sampling: Sampling,
     /// Width and height of the lit image in pixels.
     pub image: [u32; 2],
     /// Near sphere's radius; by default a thousandth of far.
@@ -78,7 +80,7 @@ pub struct Settings {
     pub far: Option<f32>,
     /// Constant bias in units of depth, at the receiver; by default `constant_bias`.
     pub bias: Option<f32>,
-    /// Also render what the light sees of each hemisphere.
+    /// Also give the maps and what the light sees of each hemisphere.
     pub views: bool,
 }
 
@@ -89,6 +91,7 @@ impl Default for Settings {
             format: Format::D32,
             method: Method::Vertex,
             lookup: Lookup::Pixel,
+            sampling: Sampling::Nearest,
             image: [960, 720],
             near: None,
             far: None,
@@ -169,8 +172,8 @@ pub struct Picture {
 pub struct Rendering {
     /// The lit image.
     pub lit: Picture,
-    /// The stored maps, one layer a hemisphere.
-    pub maps: DepthMaps,
+    /// The stored maps, one layer a hemisphere, where the settings ask for views.
+    pub maps: Option<DepthMaps>,
     /// What the light sees of each hemisphere, where asked for.
     pub views: Vec<Picture>,
     /// Each pass and its time.
@@ -192,7 +195,7 @@ pub enum FrameError {
     },
     /// The clipping spheres enclose nothing.
     #[error(
-        "near {near} must be above 0 and below far {far}; set --near and --far, or leave them out"
+        "near {near} and far {far} must fit {SMALLEST:e} <= near < far <= {LARGEST:e}; set --near and --far, or move the light off the geometry"
     )]
     Spheres {
         /// Near sphere's radius.
@@ -213,6 +216,31 @@ pub enum FrameError {
         /// The largest allowed.
         limit: u32,
     },
+    /// More memory than there is.
+    #[error(
+        "{what} needs {bytes} bytes of memory at once, more than there are; choose a smaller one"
+    )]
+    Memory {
+        /// The option.
+        what: &'static str,
+        /// Bytes needed.
+        bytes: u64,
+    },
+    /// A scene's vertex that is too far out.
+    #[error(
+        "mesh `{mesh}`: vertex {index} at {value} is outside float range, -{LARGEST:e} to {LARGEST:e}; scale the scene down"
+    )]
+    Vertex {
+        /// The mesh.
+        mesh: String,
+        /// Index in the mesh.
+        index: usize,
+        /// The vertex.
+        value: Vec3,
+    },
+    /// The light's main axis points nowhere.
+    #[error("the light's axis {0} has no direction; set --axis to a vector other than 0,0,0")]
+    Axis(Vec3),
     /// The camera looks nowhere.
     #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
     Camera(Vec3),
@@ -220,6 +248,9 @@ pub enum FrameError {
 
 /// Largest coordinate: squares of sums of three stay finite in f32.
 pub const LARGEST: f32 = 1e18;
+
+/// Smallest near sphere: squares of distances beyond it do not underflow.
+pub const SMALLEST: f32 = 1e-15;
 
 /// Largest map or image side without an adapter, WebGPU's usual limit on large ones.
 pub const LARGEST_SIZE: u32 = 16384;
@@ -233,7 +264,7 @@ pub fn guard_band(size: u32) -> f32 {
 
 /// Brabec's constant bias in units of depth: what a receiver at the far sphere needs at 45 degrees
 /// incidence, half a texel's diagonal off, sqrt(2) / 2 texel of 4 (1 + guard) / N rad, plus one
-/// quantum of the format.
+/// step of the format. For near much smaller than far; at most 1/4.
 pub fn constant_bias(size: u32, format: Format) -> f32 {
     let pitch = 4.0 * (1.0 + guard_band(size)) / size as f32;
     (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
@@ -251,7 +282,17 @@ impl Frame {
         camera: &Camera,
         settings: Settings,
     ) -> Result<Self, FrameError> {
+        for mesh in &scene.meshes {
+            let outside = |v: &Vec3| check("", *v).is_err();
+            if let Some(index) = mesh.positions.iter().position(outside) {
+                let (mesh, value) = (mesh.name.clone(), mesh.positions[index]);
+                return Err(FrameError::Vertex { mesh, index, value });
+            }
+        }
         check("the light's position", position)?;
+        if !axis.is_finite() || axis.as_dvec3().try_normalize().is_none() {
+            return Err(FrameError::Axis(axis));
+        }
         check("the camera's eye", camera.eye)?;
         check("the camera's target", camera.target)?;
         check_size("--size", settings.size, LARGEST_SIZE)?;
@@ -269,9 +310,6 @@ impl Frame {
             vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(corner));
             triangles.extend(mesh.triangles.iter().map(|t| t.map(|index| base + index)));
         }
-        for vertex in &vertices {
-            check("the scene's vertex", vertex.position)?;
-        }
         let bias = settings.bias.unwrap_or_else(|| constant_bias(settings.size, settings.format));
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
@@ -280,7 +318,7 @@ impl Frame {
         let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
         let far = settings.far.unwrap_or(reach * FAR_SLACK);
         let near = settings.near.unwrap_or(far * NEAR_SHARE);
-        if !(near > 0.0 && near < far && far.is_finite()) {
+        if !(near >= SMALLEST && near < far && far <= LARGEST) {
             return Err(FrameError::Spheres { near, far });
         }
         let [right, up, forward] = basis(axis.as_dvec3()).map(|row| float(row.as_vec3()));

@@ -335,9 +335,12 @@ fn sizes_above_the_adapters_limits_are_refused_by_name() {
     let maps =
         DepthMaps { size: limit + 1, layers: 1, depths: vec![], sampling: Sampling::Nearest };
     let error = Texels::new(&device).unwrap().upload(&device, &maps, Format::D32).unwrap_err();
-    assert!(matches!(&error, GpuError::Limit { what: "map size", .. }), "{error}");
+    assert!(matches!(&error, GpuError::Limit { what: "--size", .. }), "{error}");
     assert_eq!(
         error.to_string(),
-        format!("map size {} is outside this adapter's range 1 to {limit}", limit + 1)
+        format!(
+            "--size {} is outside this adapter's range 1 to {limit}; choose one inside it",
+            limit + 1
+        )
     );
 }

@@ -94,12 +94,14 @@ fn missing_adapter_falls_back_to_the_ports_and_says_so() {
 #[test]
 fn negative_light_coordinates_work_with_and_without_an_equals_sign() {
     let folder = folder("negative");
-    for (name, light) in
-        [("a.png", &["--light=-0.1,0.3,-0.2"][..]), ("b.png", &["--light", "-0.1,0.3,-0.2"])]
-    {
+    for (name, light) in [
+        ("a.png", &["--light=-1,2,0.5"][..]),
+        ("b.png", &["--light", "-1,2,0.5"]),
+        ("default.png", &[]),
+    ] {
         let mut arguments = vec![
             "render",
-            "cornell",
+            "brabec-room",
             "--adapter",
             "cpu",
             "--size",
@@ -115,6 +117,7 @@ fn negative_light_coordinates_work_with_and_without_an_equals_sign() {
     }
     let read = |name| std::fs::read(folder.join(name)).unwrap();
     assert_eq!(read("a.png"), read("b.png"));
+    assert_ne!(read("a.png"), read("default.png"));
 }
 
 #[test]
@@ -167,6 +170,11 @@ fn bad_settings_are_refused() {
         arguments.extend(extra);
         arguments
     };
+    refused("axis", &with(&["--axis=0,0,0"]), &["axis", "--axis"]);
+    refused("picture", &["render", "cornell", "-o", "out.jpg"], &["out.jpg", "PNG"]);
+    refused("near", &with(&["--near", "-1"]), &["near -1"]);
+    refused("filter", &with(&["--filter", "pcss"]), &["--filter pcss is not built yet"]);
+    refused("bias", &with(&["--bias", "footprint"]), &["--bias footprint is not built yet"]);
     refused("light-text", &with(&["--light", "1,2"]), &["--light", "three numbers"]);
     refused("light-range", &with(&["--light", "1e39,0,0"]), &["1e39", "float range"]);
     refused("light-huge", &with(&["--light", "1e30,0,0"]), &["light", "1e18"]);
@@ -191,6 +199,33 @@ fn unwritable_outputs_are_refused_and_nothing_is_half_written() {
     let output = dpsm(&folder, &render("out.png"));
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(files(&folder), ["out.png"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_keep_linking_and_pipes_are_refused() {
+    let folder = folder("special");
+    std::fs::write(folder.join("real.wgsl"), "old").unwrap();
+    std::os::unix::fs::symlink("real.wgsl", folder.join("link.wgsl")).unwrap();
+    assert!(dpsm(&folder, &["link", "depth", "-o", "link.wgsl"]).status.success());
+    assert!(folder.join("link.wgsl").is_symlink());
+    let written = std::fs::read_to_string(folder.join("real.wgsl")).unwrap();
+    assert_eq!(written, dpsm::link(&["depth"]).unwrap().text);
+    assert!(Command::new("mkfifo").arg(folder.join("pipe")).status().unwrap().success());
+    let output = dpsm(&folder, &["link", "depth", "-o", "pipe"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("no regular file"), "{}", text(&output.stderr));
+    assert_eq!(files(&folder), ["link.wgsl", "pipe", "real.wgsl"]);
+}
+
+#[test]
+fn back_end_that_is_not_there_is_named() {
+    let folder = folder("back-end");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dpsm"));
+    command.current_dir(&folder).env("WGPU_BACKEND", "nonsense");
+    let output = command.args(["--adapter", "gpu", "eval", "dpsm_depth"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("WGPU_BACKEND=nonsense"), "{}", text(&output.stderr));
 }
 
 #[test]

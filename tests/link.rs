@@ -1,5 +1,7 @@
 //! Linking modules of toy text, and errors in the user's own lines.
 
+#![cfg(feature = "naga")]
+
 use dpsm::link::{LinkError, Origin, Place};
 use dpsm::validate::ValidateError;
 use dpsm::{Catalogue, Linked, Module, validate};

@@ -4,7 +4,7 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{CASES, EPS, EPS_DOUBLE, Widen, Worst, angle, point, rng, unit};
+use common::{CASES, EPS, EPS_DOUBLE, Worst, angle, point, rng, unit};
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::hemisphere::DPSM_POLE_RADIUS;
 use dpsm::scalar::paraboloid::*;
@@ -24,7 +24,7 @@ fn project_stays_within_its_bound_over_its_whole_domain() {
             let scale = exact.abs().max((-103.0_f64).exp2());
             match p.z >= 0.0 {
                 true => front.note((value - exact).abs() / scale, 9.5 * EPS, p),
-                false => back.note((value - exact).abs() / scale, 20.0 * EPS, p),
+                false => back.note((value - exact).abs() / scale, 19.0 * EPS, p),
             }
         }
     }
@@ -42,7 +42,7 @@ fn directions_near_the_back_pole_stay_within_one_rounding_of_it() {
         assert!(uv.x.is_finite() && uv.y.is_finite(), "{p:?} gives {uv:?}");
         let off = angle(dpsm_unproject(uv.widen()), p.widen());
         // the pole's own radius 2^-24 rad, and the 2^-24 rad at which it begins
-        assert!(off <= 2.0 * EPS, "{p:?} is {off:e} rad off");
+        assert!(off <= EPS, "{p:?} is {off:e} rad off");
     }
 }
 
@@ -78,7 +78,7 @@ fn unproject_stays_within_its_bound() {
         let uv = Vec2::new(p.x, p.y);
         let (d, exact) = (dpsm_unproject(uv).widen(), dpsm_unproject(uv.widen()));
         for (value, exact) in [(d.x, exact.x), (d.y, exact.y), (d.z, exact.z)] {
-            worst.note((value - exact).abs(), 5.5 * EPS, uv);
+            worst.note((value - exact).abs(), 5.0 * EPS, uv);
         }
     }
     worst.check("dpsm_unproject");
@@ -91,8 +91,8 @@ fn unproject_takes_project_back_to_the_direction() {
     for _ in 0..CASES {
         let p = unit(&mut rng);
         let back = dpsm_unproject(dpsm_project(p)).widen();
-        // project: 20 eps relative in uv is at most 20 eps rad; unproject: 5.5 eps a component
-        let bound = (20.0 + 5.5 * 3.0_f64.sqrt()) * EPS;
+        // project: 19 eps relative in uv is at most 19 eps rad; unproject: 5 eps a component
+        let bound = (19.0 + 5.0 * 3.0_f64.sqrt()) * EPS;
         worst.note(angle(back, p.widen()), bound, p);
     }
     worst.check("round trip, radians");
@@ -148,12 +148,15 @@ fn pitch_and_solid_angle_stay_within_their_bounds() {
     let mut rng = rng("pitch bound");
     let (mut pitch, mut solid) = (Worst::default(), Worst::default());
     for _ in 0..CASES {
-        let p = point(&mut rng, -30, 20);
+        let p = point(&mut rng, -60, 55); // size (1 + r^2) <= 2^14 2^111
         let (uv, size, guard) = (Vec2::new(p.x, p.y), rng.u32(1..16385) as f32, rng.f32());
         let wide = (uv.widen(), f64::from(size), f64::from(guard));
         let exact = dpsm_texel_pitch(wide.0, wide.1, wide.2);
         let value = f64::from(dpsm_texel_pitch(uv, size, guard));
         pitch.note((value - exact).abs() / exact, 8.5 * EPS, uv);
+        if exact < (-51.0_f64).exp2() {
+            continue;
+        }
         let exact = exact * exact;
         let value = f64::from(dpsm_texel_solid_angle(uv, size, guard));
         solid.note((value - exact).abs() / exact, 18.0 * EPS, uv);

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{CASES, EPS, Widen, Worst, rng, unit};
+use common::{CASES, EPS, Worst, rng, unit};
 use dpsm::scalar::float::Vec3;
 use dpsm::scalar::shade::*;
 

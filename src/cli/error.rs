@@ -12,7 +12,7 @@ use dpsm::validate::ValidateError;
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
     /// A file that cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}; check the path", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -20,12 +20,14 @@ pub enum CliError {
         source: std::io::Error,
     },
     /// An output that cannot be written.
-    #[error("cannot write {}: {source}; choose another place with -o", path.display())]
+    #[error("cannot write {}: {source}; choose another place with {remedy}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
+        /// The option that says where.
+        remedy: &'static str,
     },
     /// An option's value that is known but not built.
     #[error("{option} {value} is not built yet; built: {built}")]

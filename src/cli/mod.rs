@@ -4,6 +4,7 @@ mod error;
 mod eval;
 mod output;
 mod render;
+mod setup;
 mod text;
 
 pub use error::CliError;

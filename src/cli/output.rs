@@ -8,18 +8,31 @@ use dpsm::render::Picture;
 use super::CliError;
 
 /// Files that are written aside and moved to their places together.
-#[derive(Default)]
 pub struct Outputs {
     files: Vec<(PathBuf, tempfile::NamedTempFile)>,
+    /// The option that says where they go, for messages.
+    option: &'static str,
 }
 
 impl Outputs {
-    /// Adds a file's bytes; nothing shows under `path` yet.
+    /// No files yet; `option` is the one that says where they go.
+    pub fn for_option(option: &'static str) -> Self {
+        Self { files: Vec::new(), option }
+    }
+
+    /// Adds a file's bytes; nothing shows under `path` yet. A link's target is replaced, not the
+    /// link; a pipe or a device is refused, as it can take no whole file.
     pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-        let wrap = |source| CliError::Write { path: path.into(), source };
-        if path.is_dir() {
-            return Err(wrap(std::io::ErrorKind::IsADirectory.into()));
+        let wrap = |source| CliError::Write { path: path.into(), source, remedy: self.option };
+        let target = path.canonicalize().unwrap_or_else(|_| path.into());
+        if target.exists() && !target.is_file() {
+            let what = if target.is_dir() { "it is a folder" } else { "it is no regular file" };
+            return Err(wrap(std::io::Error::other(what)));
         }
+        if target.metadata().is_ok_and(|metadata| metadata.permissions().readonly()) {
+            return Err(wrap(std::io::ErrorKind::PermissionDenied.into()));
+        }
+        let path = target.as_path();
         let folder = match path.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
@@ -31,7 +44,8 @@ impl Outputs {
             // the user's umask decides, as for any other file
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let mut file = builder.prefix(".dpsm-").tempfile_in(folder).map_err(wrap)?;
+        let created = builder.prefix(".dpsm-").tempfile_in(folder);
+        let mut file = created.map_err(|error| wrap(error.kind().into()))?;
         file.write_all(bytes).map_err(wrap)?;
         self.files.push((path.into(), file));
         Ok(())
@@ -56,8 +70,11 @@ impl Outputs {
     pub fn finish(self) -> Result<Vec<PathBuf>, CliError> {
         let mut paths = Vec::new();
         for (path, file) in self.files {
-            file.persist(&path)
-                .map_err(|error| CliError::Write { path: path.clone(), source: error.error })?;
+            file.persist(&path).map_err(|error| CliError::Write {
+                path: path.clone(),
+                source: error.error,
+                remedy: self.option,
+            })?;
             paths.push(path);
         }
         Ok(paths)
@@ -69,7 +86,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(CliError::Write { path: "standard output".into(), source: error })
+            Err(CliError::Write { path: "standard output".into(), source: error, remedy: "-o" })
         }
         _ => Ok(()),
     }
@@ -78,7 +95,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
 /// Writes text to a file, or prints it.
 pub fn write_or_print(path: Option<&Path>, text: &str) -> Result<(), CliError> {
     let Some(path) = path else { return print(text) };
-    let mut outputs = Outputs::default();
+    let mut outputs = Outputs::for_option("-o");
     outputs.add(path, text.as_bytes())?;
     outputs.finish()?;
     Ok(())

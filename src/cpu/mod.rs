@@ -4,35 +4,30 @@ mod raster;
 
 pub use raster::{Fragment, triangle};
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use glam::Vec3;
 
 use crate::render::{
-    AMBIENT, Frame, Lookup, Method, Picture, Rendering, SPECULAR, Vertex, View, float,
+    AMBIENT, Frame, FrameError, Lookup, Method, Picture, Rendering, SPECULAR, Vertex, View, float,
 };
 use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
 use crate::scalar::float::{self as scalar, Float, Vec2, Vec4, select};
 use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
-use crate::scalar::maps::{DepthMaps, Sampling};
+use crate::scalar::maps::DepthMaps;
 use crate::scalar::shade::{dpsm_highlight, dpsm_lambert, dpsm_shade};
 use crate::scalar::visibility::{
     DpsmReceiverVertex, dpsm_receiver_vertex, dpsm_visibility, dpsm_visibility_vertex,
 };
 
 /// Renders a frame on the processor.
-pub fn render(frame: &Frame) -> Rendering {
+pub fn render(frame: &Frame) -> Result<Rendering, FrameError> {
     let hemispheres = frame.light.hemispheres;
-    let size = frame.settings.size;
-    let mut maps = DepthMaps::empty(size, hemispheres, Sampling::Nearest);
+    let [width, height] = frame.settings.image;
     let mut timings = Vec::new();
-    let texels = size as usize * size as usize;
-    let layers = maps.depths.chunks_mut(texels).zip(["front map", "back map"]);
-    for (hemisphere, (layer, name)) in (0..).zip(layers) {
-        let start = Instant::now();
-        map_pass(frame, hemisphere, layer);
-        timings.push((name.to_string(), start.elapsed()));
-    }
+    // a pixel takes its surface, its depth and its colour
+    reserve::<(Visible, f32, [u8; 4])>("--image", u64::from(width) * u64::from(height))?;
+    let maps = timed_maps(frame, &mut timings)?;
     let start = Instant::now();
     let lit = camera_pass(frame, &maps);
     timings.push(("camera".to_string(), start.elapsed()));
@@ -44,7 +39,36 @@ pub fn render(frame: &Frame) -> Rendering {
             timings.push((name.to_string(), start.elapsed()));
         }
     }
-    Rendering { lit, maps, views, timings }
+    let maps = frame.settings.views.then_some(maps);
+    Ok(Rendering { lit, maps, views, timings })
+}
+
+/// Makes a frame's maps alone.
+pub fn make_maps(frame: &Frame) -> Result<DepthMaps, FrameError> {
+    timed_maps(frame, &mut Vec::new())
+}
+
+fn timed_maps(
+    frame: &Frame,
+    timings: &mut Vec<(String, Duration)>,
+) -> Result<DepthMaps, FrameError> {
+    let (size, hemispheres) = (frame.settings.size, frame.light.hemispheres);
+    reserve::<f32>("--size", u64::from(size) * u64::from(size) * u64::from(hemispheres))?;
+    let mut maps = DepthMaps::empty(size, hemispheres, frame.settings.sampling);
+    let layers = maps.depths.chunks_mut(size as usize * size as usize);
+    for (hemisphere, (layer, name)) in (0..).zip(layers.zip(["front map", "back map"])) {
+        let start = Instant::now();
+        map_pass(frame, hemisphere, layer);
+        timings.push((name.to_string(), start.elapsed()));
+    }
+    Ok(maps)
+}
+
+/// Checks that there is memory for so many items before it is needed.
+fn reserve<T>(what: &'static str, items: u64) -> Result<(), FrameError> {
+    let failed = FrameError::Memory { what, bytes: items * size_of::<T>() as u64 };
+    let mut probe = Vec::<T>::new();
+    probe.try_reserve_exact(items as usize).map_err(|_| failed)
 }
 
 /// Interpolates three values with a fragment's weights.

@@ -7,7 +7,7 @@ use super::maps::{
 use super::timer::{Stamps, render_writes};
 use super::{Device, GpuError};
 use crate::render::{AMBIENT, Frame, Lookup, Picture, Rendering, SPECULAR};
-use crate::scalar::maps::Sampling;
+use crate::scalar::maps::{DepthMaps, Sampling};
 
 /// Format of the pictures: the attachment encodes sRGB.
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -17,6 +17,7 @@ const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Renders a frame: maps, lit image and, where the settings ask for them, hemisphere views.
 pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
+    check_image(device, frame.settings.image)?;
     let mesh = MeshBuffers::new(device, frame)?;
     let maps = ShadowMaps::new(device, frame)?;
     let mut timings = Vec::new();
@@ -44,7 +45,35 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
             timings.push(time);
         }
     }
-    Ok(Rendering { lit, maps: maps.download(device)?, views, timings })
+    let stored = match frame.settings.views {
+        true => Some(maps.download(device, frame.settings.sampling)?),
+        false => None,
+    };
+    Ok(Rendering { lit, maps: stored, views, timings })
+}
+
+/// Makes a frame's maps alone and reads them back.
+pub fn make_maps(device: &Device, frame: &Frame) -> Result<DepthMaps, GpuError> {
+    let mesh = MeshBuffers::new(device, frame)?;
+    let maps = ShadowMaps::new(device, frame)?;
+    let encoder = device.encode("the maps", |encoder| {
+        for hemisphere in 0..maps.hemispheres() {
+            maps.record(encoder, hemisphere, &mesh, None);
+        }
+    })?;
+    device.submit("the maps", encoder)?;
+    maps.download(device, frame.settings.sampling)
+}
+
+fn check_image(device: &Device, image: [u32; 2]) -> Result<(), GpuError> {
+    let limit = device.device.limits().max_texture_dimension_2d;
+    match image.iter().find(|&&side| !(1..=limit).contains(&side)) {
+        Some(&asked) => {
+            let what = "--image side";
+            Err(GpuError::Limit { what, asked: asked.into(), limit: limit.into() })
+        }
+        None => Ok(()),
+    }
 }
 
 /// One colour pass.
@@ -82,7 +111,7 @@ impl<'a> Camera<'a> {
         words.extend(light_words(&frame.light));
         words.extend([frame.bias.to_bits(), 0, 0, 0]);
         let uniform = uniform_buffer(device, &words)?;
-        let sampler = comparison_sampler(device, Sampling::Nearest)?;
+        let sampler = comparison_sampler(device, frame.settings.sampling)?;
         Ok(Self { module, uniform, sampler, maps })
     }
 
@@ -94,11 +123,6 @@ impl<'a> Camera<'a> {
         mesh: &MeshBuffers,
         instance: u32,
     ) -> Result<(Picture, (String, std::time::Duration)), GpuError> {
-        let limit = device.device.limits().max_texture_dimension_2d;
-        if let Some(&asked) = [width, height].iter().find(|&&side| !(1..=limit).contains(&side)) {
-            let what = "image size";
-            return Err(GpuError::Limit { what, asked: asked.into(), limit: limit.into() });
-        }
         let (compare, clear) = match reversed {
             true => (wgpu::CompareFunction::Greater, 0.0),
             false => (wgpu::CompareFunction::Less, 1.0),

@@ -155,8 +155,8 @@ impl ShadowMaps {
     }
 
     /// Reads the stored depths back.
-    pub fn download(&self, device: &Device) -> Result<DepthMaps, GpuError> {
-        Texels::new(device)?.download(device, &self.view, &self.texture, Sampling::Nearest)
+    pub fn download(&self, device: &Device, sampling: Sampling) -> Result<DepthMaps, GpuError> {
+        Texels::new(device)?.download(device, &self.view, &self.texture, sampling)
     }
 }
 
@@ -169,7 +169,7 @@ pub fn depth_texture(
 ) -> Result<wgpu::Texture, GpuError> {
     let limits = device.device.limits();
     for (what, asked, limit) in [
-        ("map size", size, limits.max_texture_dimension_2d),
+        ("--size", size, limits.max_texture_dimension_2d),
         ("number of maps", layers, limits.max_texture_array_layers),
     ] {
         if !(1..=limit).contains(&asked) {

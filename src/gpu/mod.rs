@@ -6,7 +6,7 @@ mod maps;
 mod texels;
 mod timer;
 
-pub use camera::{comparison_sampler, render};
+pub use camera::{comparison_sampler, make_maps, render};
 pub use evaluate::{Evaluation, Evaluator, Resources, entry_point};
 pub use maps::{MeshBuffers, ShadowMaps};
 pub use texels::Texels;
@@ -69,7 +69,7 @@ pub enum GpuError {
         message: String,
     },
     /// A size above a limit.
-    #[error("{what} {asked} is outside this adapter's range 1 to {limit}")]
+    #[error("{what} {asked} is outside this adapter's range 1 to {limit}; choose one inside it")]
     Limit {
         /// What was asked for.
         what: &'static str,
@@ -124,7 +124,11 @@ impl Device {
     /// GPU before a software adapter where they are silent.
     pub fn open() -> Result<Self, GpuError> {
         let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY);
+        let named = std::env::var("WGPU_BACKEND").unwrap_or_default();
+        descriptor.backends = match named.trim() {
+            "" => wgpu::Backends::PRIMARY,
+            named => wgpu::Backends::from_comma_list(named),
+        };
         let backends = descriptor.backends;
         let instance = wgpu::Instance::new(descriptor);
         let mut adapters = pollster::block_on(instance.enumerate_adapters(backends));
@@ -137,10 +141,13 @@ impl Device {
         };
         let Some(adapter) = adapters.into_iter().find(fits) else {
             let found = if names.is_empty() { "none".into() } else { names.join(", ") };
-            let wanted = match wanted.as_str() {
+            let mut wanted = match wanted.as_str() {
                 "" => String::new(),
                 name => format!(" whose name contains `{name}`"),
             };
+            if !named.trim().is_empty() {
+                wanted.push_str(&format!(" of the back-end WGPU_BACKEND={named}"));
+            }
             return Err(GpuError::NoAdapter { wanted, found });
         };
         Self::of(&adapter)

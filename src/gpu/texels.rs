@@ -1,6 +1,8 @@
 //! Depth textures from and to arrays, for formats that cannot be copied.
 
-use super::maps::{depth_attachment, depth_state, depth_texture, layer_view, shader};
+use super::maps::{
+    depth_attachment, depth_state, depth_texture, layer_view, shader, uniform_buffer,
+};
 use super::{Device, GpuError};
 use crate::render::Format;
 use crate::scalar::maps::{DepthMaps, Sampling};
@@ -31,15 +33,13 @@ impl Texels {
     ) -> Result<DepthMaps, GpuError> {
         use wgpu::BufferUsages as Usage;
         let (size, layers) = (texture.width(), texture.depth_or_array_layers());
-        let bytes = u64::from(size) * u64::from(size) * u64::from(layers) * 4;
-        let limit = device.device.limits().max_storage_buffer_binding_size;
-        if bytes > limit {
-            let what = "bytes of all maps";
-            return Err(GpuError::Limit { what, asked: bytes, limit });
-        }
+        let rows = layers * size;
+        let band = (device.chunk_bytes / (u64::from(size) * 4)).clamp(1, u64::from(rows)) as u32;
+        let bytes = u64::from(band) * u64::from(size) * 4;
         let texels = device.buffer("texels", bytes, Usage::STORAGE | Usage::COPY_SRC)?;
         let back = device.buffer("texels read back", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
-        let encoder = device.encode("reading the maps", |encoder| {
+        let uniform = uniform_buffer(device, &[0, 0, 0, 0])?;
+        let (pipeline, group) = device.step("reading the maps", || {
             let pipeline =
                 device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some("download"),
@@ -58,17 +58,28 @@ impl Texels {
                         resource: wgpu::BindingResource::TextureView(view),
                     },
                     wgpu::BindGroupEntry { binding: 1, resource: texels.as_entire_binding() },
+                    wgpu::BindGroupEntry { binding: 3, resource: uniform.as_entire_binding() },
                 ],
             });
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(size.div_ceil(TILE), size.div_ceil(TILE), layers);
-            drop(pass);
-            encoder.copy_buffer_to_buffer(&texels, 0, &back, 0, bytes);
+            (pipeline, group)
         })?;
-        device.submit("reading the maps", encoder)?;
-        let depths = bytemuck::pod_collect_to_vec(&device.read(&back, bytes)?);
+        let mut depths = Vec::new();
+        for first in (0..rows).step_by(band as usize) {
+            let taken = band.min(rows - first);
+            let encoder = device.encode("reading the maps", |encoder| {
+                device.queue.write_buffer(&uniform, 0, bytemuck::bytes_of(&[first, taken]));
+                let mut pass = encoder.begin_compute_pass(&Default::default());
+                pass.set_pipeline(&pipeline);
+                pass.set_bind_group(0, &group, &[]);
+                pass.dispatch_workgroups(size.div_ceil(TILE), taken.div_ceil(TILE), 1);
+                drop(pass);
+                encoder.copy_buffer_to_buffer(&texels, 0, &back, 0, bytes);
+            })?;
+            device.submit("reading the maps", encoder)?;
+            let bytes = u64::from(taken) * u64::from(size) * 4;
+            let band: Vec<f32> = bytemuck::pod_collect_to_vec(&device.read(&back, bytes)?);
+            depths.extend(band);
+        }
         Ok(DepthMaps { size, layers, depths, sampling })
     }
 

@@ -96,6 +96,20 @@ macro_rules! vector {
             }
         }
 
+        impl $name<f32> {
+            /// The same vector in f64.
+            pub fn widen(self) -> $name<f64> {
+                $name { $($c: self.$c.into()),+ }
+            }
+        }
+
+        impl $name<f64> {
+            /// The nearest vector in f32.
+            pub fn narrow(self) -> $name<f32> {
+                $name { $($c: self.$c as f32),+ }
+            }
+        }
+
         vector!(@each $name { $($c),+ } Add add +, Sub sub -, Mul mul *);
 
         impl<T: Float> Mul<T> for $name<T> {

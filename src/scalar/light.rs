@@ -46,6 +46,27 @@ pub struct DpsmLight<T> {
     pub padding: u32,
 }
 
+impl DpsmLight<f32> {
+    /// The same light in f64.
+    pub fn widen(self) -> DpsmLight<f64> {
+        DpsmLight {
+            position: self.position.widen(),
+            near: self.near.into(),
+            right: self.right.widen(),
+            far: self.far.into(),
+            up: self.up.widen(),
+            guard: self.guard.into(),
+            forward: self.forward.widen(),
+            size: self.size.into(),
+            rectangle: self.rectangle.widen(),
+            first_layer: self.first_layer,
+            placement: self.placement,
+            hemispheres: self.hemispheres,
+            padding: self.padding,
+        }
+    }
+}
+
 #[cfg(feature = "gpu")]
 mod bytes {
     use super::DpsmLight;

@@ -67,31 +67,6 @@ pub fn light(rng: &mut Rng) -> DpsmLight<f32> {
     }
 }
 
-/// The same light in f64.
-pub fn widen_light(light: DpsmLight<f32>) -> DpsmLight<f64> {
-    let rectangle = light.rectangle;
-    DpsmLight {
-        position: light.position.widen(),
-        near: light.near.into(),
-        right: light.right.widen(),
-        far: light.far.into(),
-        up: light.up.widen(),
-        guard: light.guard.into(),
-        forward: light.forward.widen(),
-        size: light.size.into(),
-        rectangle: dpsm::scalar::float::Vec4 {
-            x: rectangle.x.into(),
-            y: rectangle.y.into(),
-            z: rectangle.z.into(),
-            w: rectangle.w.into(),
-        },
-        first_layer: light.first_layer,
-        placement: light.placement,
-        hemispheres: light.hemispheres,
-        padding: 0,
-    }
-}
-
 /// Cross product.
 pub fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
     Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
@@ -100,43 +75,6 @@ pub fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
 /// Angle in radians between two directions, accurate also where it is small.
 pub fn angle(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
     cross(a, b).length().atan2(a.dot(b))
-}
-
-/// Between f32 and f64.
-pub trait Widen {
-    /// In f64.
-    type Wide;
-    /// Exactly the same value.
-    fn widen(self) -> Self::Wide;
-}
-
-/// Between f64 and f32.
-pub trait Narrow {
-    /// In f32.
-    type Slim;
-    /// Rounded.
-    fn narrow(self) -> Self::Slim;
-}
-
-impl Widen for Vec3<f32> {
-    type Wide = Vec3<f64>;
-    fn widen(self) -> Vec3<f64> {
-        Vec3 { x: self.x.into(), y: self.y.into(), z: self.z.into() }
-    }
-}
-
-impl Narrow for Vec3<f64> {
-    type Slim = Vec3<f32>;
-    fn narrow(self) -> Vec3<f32> {
-        Vec3 { x: self.x as f32, y: self.y as f32, z: self.z as f32 }
-    }
-}
-
-impl Widen for dpsm::scalar::float::Vec2<f32> {
-    type Wide = dpsm::scalar::float::Vec2<f64>;
-    fn widen(self) -> Self::Wide {
-        dpsm::scalar::float::Vec2 { x: self.x.into(), y: self.y.into() }
-    }
 }
 
 /// The largest ratio of error to bound, with its input: a check that says how close it came.

@@ -1,5 +1,7 @@
 //! Scenes: built in, read from files, and the light and camera of those that have none.
 
+#![cfg(feature = "scene")]
+
 mod built_in;
 mod gltf_faults;
 mod gltf_files;

@@ -94,9 +94,14 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The nodes of all scenes, or all nodes if the file has no scenes; each once.
+    /// The nodes of the default scene, else of the first, else all nodes; each once.
     fn nodes(&mut self, document: &Document) -> Result<(), SceneError> {
-        let mut roots: Vec<Node> = document.scenes().flat_map(|scene| scene.nodes()).collect();
+        let mut roots: Vec<Node> = document
+            .default_scene()
+            .or_else(|| document.scenes().next())
+            .into_iter()
+            .flat_map(|scene| scene.nodes())
+            .collect();
         if roots.is_empty() {
             let mut is_root = vec![true; document.nodes().len()];
             for child in document.nodes().flat_map(|node| node.children()) {

@@ -1,0 +1,237 @@
+//! Where the error comes from: one source at a time, measured beside the predicted bound.
+
+use std::ops::Range;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Bench, Point};
+use crate::render::Format;
+use crate::scalar::depth::dpsm_depth;
+use crate::scalar::float::{Vec2, Vec3};
+use crate::scalar::hemisphere::dpsm_flip;
+use crate::scalar::paraboloid::{dpsm_disk_to_texture, dpsm_project, dpsm_texture_to_disk};
+use crate::scalar::visibility::dpsm_lookup;
+
+/// One source of error, all others turned off.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Source {
+    /// The source.
+    pub name: &'static str,
+    /// Largest error measured.
+    pub measured: f64,
+    /// The bound at that place, or the formula's prediction.
+    pub predicted: f64,
+    /// Unit of both.
+    pub unit: &'static str,
+    /// Where: a mesh, or a point.
+    pub place: String,
+}
+
+/// Points along an arc or a side of a triangle at which errors are looked for.
+const STEPS: u32 = 32;
+
+/// Every source that the library has so far.
+pub fn attribute(bench: &Bench<'_>, points: &[Point], contact_gap: f64) -> Vec<Source> {
+    let all = 0..bench.frame.triangles.len() as u32;
+    let quantum = f64::from(bench.frame.settings.format.quantum());
+    let depth_range = bench.light.far - bench.light.near;
+    vec![
+        arithmetic(bench, points),
+        storage(bench, points, bench.frame.settings.format),
+        resolution(bench, points),
+        bowed_edges(bench, all.clone()),
+        affine_depth(bench, all),
+        Source {
+            name: "bias",
+            measured: contact_gap,
+            predicted: (f64::from(bench.frame.bias) + quantum) * depth_range,
+            unit: "world units, contact gap",
+            place: String::new(),
+        },
+    ]
+}
+
+/// The place of the largest ratio of measured to predicted, or of the largest measured value.
+fn largest(sources: impl ParallelIterator<Item = Source>, empty: Source) -> Source {
+    sources.reduce(|| empty.clone(), |a, b| if b.measured > a.measured { b } else { a })
+}
+
+/// f32 arithmetic: a receiver's own depth by the f32 port against f64, in world units.
+fn arithmetic(bench: &Bench<'_>, points: &[Point]) -> Source {
+    let (near, far) = (bench.light.near, bench.light.far);
+    let source = |measured, predicted, place| Source {
+        name: "f32 arithmetic",
+        measured,
+        predicted,
+        unit: "world units of distance",
+        place,
+    };
+    let at = |point: &Point| {
+        let p = bench.to_light(point.world).narrow();
+        let exact = dpsm_lookup(p.widen(), bench.light).depth;
+        let depth = dpsm_lookup(p, bench.frame.light).depth;
+        // docs/visibility.md
+        let bound = f64::from(f32::EPSILON) * (10.5 * p.widen().length() + 4.5 * near);
+        source((f64::from(depth) - exact).abs() * (far - near), bound, format!("{}", point.world))
+    };
+    largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
+}
+
+/// Storage: what the format makes of exact depths, in world units; the bound is one quantum.
+fn storage(bench: &Bench<'_>, points: &[Point], format: Format) -> Source {
+    let (near, far) = (bench.light.near, bench.light.far);
+    let source = |measured, place| Source {
+        name: "storage format",
+        measured,
+        // a depth is rounded to f32 before it is stored: half an eps of at most 1
+        predicted: (f64::from(format.quantum()) + 0.5 * f64::from(f32::EPSILON)) * (far - near),
+        unit: "world units of distance",
+        place,
+    };
+    let at = |point: &Point| {
+        let exact = dpsm_depth(bench.to_light(point.world).length(), near, far).clamp(0.0, 1.0);
+        let stored = format.store(exact as f32);
+        source((f64::from(stored) - exact).abs() * (far - near), format!("{}", point.world))
+    };
+    largest(points.par_iter().map(at), source(0.0, String::new()))
+}
+
+/// Resolution: the truth along the texel's centre in place of the point's own, everything else
+/// exact. How far a point that this decides wrongly can be from the true edge, in texels: half a
+/// texel's diagonal.
+fn resolution(bench: &Bench<'_>, points: &[Point]) -> Source {
+    let source = |measured, place| Source {
+        name: "resolution",
+        measured,
+        predicted: std::f64::consts::FRAC_1_SQRT_2,
+        unit: "texels from the true edge",
+        place,
+    };
+    let at = |point: &Point| {
+        let (hemisphere, uv) = bench.place(point);
+        let size = bench.light.size;
+        let st = dpsm_disk_to_texture(uv, bench.light.guard) * size;
+        let centre = Vec2::new(st.x.floor() + 0.5, st.y.floor() + 0.5);
+        let centre_uv = dpsm_texture_to_disk(centre / size, bench.light.guard);
+        let sees = bench.sees(point);
+        if bench.reaches(point, centre_uv, hemisphere).is_none_or(|reaches| reaches == sees) {
+            return source(0.0, String::new());
+        }
+        // the edge lies between the point and the centre: find it there
+        let (mut same, mut other) = (0.0, 1.0);
+        for _ in 0..STEPS {
+            let middle = 0.5 * (same + other);
+            let on_way = uv + (centre_uv - uv) * middle;
+            match bench.reaches(point, on_way, hemisphere) {
+                Some(reaches) if reaches != sees => other = middle,
+                _ => same = middle,
+            }
+        }
+        let texels = (centre_uv - uv).length() * other / bench.texel();
+        source(texels, format!("{}", point.world))
+    };
+    largest(points.par_iter().map(at), source(0.0, String::new()))
+}
+
+/// Bowed edges: how far the straight edges of triangles are from the arcs that they stand for, in
+/// texels. Predicted: the sagitta c^2 |m_z| N / 16 of a chord c whose plane through the light has
+/// the unit normal m, divided by 1 + guard.
+///
+/// Edges with both ends in the stored disk of a hemisphere.
+pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
+    let source = |measured, predicted, place| Source {
+        name: "bowed edges",
+        measured,
+        predicted,
+        unit: "texels",
+        place,
+    };
+    let scale = 0.5 * bench.light.size / (1.0 + bench.light.guard);
+    let of_edge = |hemisphere: u32, a: Vec3<f64>, b: Vec3<f64>, triangle: u32| {
+        let (start, end) = (dpsm_project(a), dpsm_project(b));
+        let chord = (end - start).length();
+        let outside = start.length().max(end.length()) > 1.0 + bench.light.guard;
+        let normal = cross(a, b);
+        if outside || chord == 0.0 || normal.length() == 0.0 || hemisphere >= bench.maps.layers {
+            return source(0.0, 0.0, String::new());
+        }
+        let along = (end - start) / chord;
+        let bow = (0..=STEPS)
+            .map(|k| {
+                let t = f64::from(k) / f64::from(STEPS);
+                let on_arc = dpsm_project(a / a.length() * (1.0 - t) + b / b.length() * t);
+                let off = on_arc - start;
+                (off.x * along.y - off.y * along.x).abs()
+            })
+            .fold(0.0, f64::max);
+        let lean = (normal.z / normal.length()).abs();
+        source(bow * scale, chord * chord * lean / 8.0 * scale, place(bench, triangle))
+    };
+    let of_triangle = |triangle: u32| {
+        let corners = bench.corners(triangle).map(|corner| bench.to_light(corner));
+        let edges = [(0, 1), (1, 2), (2, 0)];
+        let both = (0..2).flat_map(|h| edges.map(|(i, j)| (h, corners[i], corners[j])));
+        both.map(|(h, a, b)| of_edge(h, dpsm_flip(a, h), dpsm_flip(b, h), triangle))
+            .max_by(|a, b| a.measured.total_cmp(&b.measured))
+            .unwrap_or_else(|| source(0.0, 0.0, String::new()))
+    };
+    largest(triangles.into_par_iter().map(of_triangle), source(0.0, 0.0, String::new()))
+}
+
+/// Affine depth: how far the distance that is interpolated over a triangle's image is from that
+/// of its plane there, as a share of the plane's distance from the light. Predicted:
+/// phi^2 / 8 for the triangle's angular size phi.
+///
+/// Triangles with all corners in the stored disk of a hemisphere and a plane that is not edge-on.
+pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
+    let source = |measured, predicted, place| Source {
+        name: "affine depth",
+        measured,
+        predicted,
+        unit: "of the plane's distance",
+        place,
+    };
+    let of_hemisphere = |triangle: u32, hemisphere: u32| {
+        let corners = bench.corners(triangle).map(|c| dpsm_flip(bench.to_light(c), hemisphere));
+        let disk = corners.map(dpsm_project);
+        let [a, b, c] = corners;
+        let normal = cross(b - a, c - a);
+        let height = (normal.dot(a) / normal.length()).abs();
+        let outside = disk.iter().any(|uv| uv.length() > 1.0 + bench.light.guard);
+        if outside || hemisphere >= bench.maps.layers || height.is_nan() || height == 0.0 {
+            return source(0.0, 0.0, String::new());
+        }
+        let lengths = corners.map(|corner| corner.length());
+        let mut worst: f64 = 0.0;
+        for i in 0..=STEPS {
+            for j in 0..=STEPS - i {
+                let weights = [i, j, STEPS - i - j].map(|k| f64::from(k) / f64::from(STEPS));
+                let uv = disk[0] * weights[0] + disk[1] * weights[1] + disk[2] * weights[2];
+                let affine: f64 = weights.iter().zip(lengths).map(|(k, l)| k * l).sum();
+                let d = crate::scalar::paraboloid::dpsm_unproject(uv);
+                let exact = normal.dot(a) / normal.dot(d);
+                worst = worst.max((affine - exact).abs() / height);
+            }
+        }
+        let angle = |p: Vec3<f64>, q: Vec3<f64>| cross(p, q).length().atan2(p.dot(q));
+        let phi = angle(a, b).max(angle(b, c)).max(angle(c, a));
+        source(worst, phi * phi / 8.0, place(bench, triangle))
+    };
+    let of_triangle = |triangle: u32| {
+        let [front, back] = [0, 1].map(|hemisphere| of_hemisphere(triangle, hemisphere));
+        if back.measured > front.measured { back } else { front }
+    };
+    largest(triangles.into_par_iter().map(of_triangle), source(0.0, 0.0, String::new()))
+}
+
+fn place(bench: &Bench<'_>, triangle: u32) -> String {
+    let [a, b, c] = bench.corners(triangle);
+    let middle: DVec3 = (a + b + c) / 3.0;
+    format!("triangle {triangle} around {middle:.3}")
+}
+
+fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {
+    Vec3::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+}

@@ -1,0 +1,318 @@
+//! Shadow error at surface points, and penumbra error of filters.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Bench, Point, percentile};
+use crate::scalar::depth::dpsm_distance;
+use crate::scalar::float::Vec2;
+use crate::scalar::visibility::{dpsm_lookup, dpsm_visibility};
+
+/// Rays along a side of a footprint, its corners included.
+const FOOTPRINT_RAYS: i32 = 5;
+
+/// Radii in texels at which the true shadow edge is looked for.
+const RINGS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+
+/// Azimuths of each ring.
+const AZIMUTHS: u32 = 16;
+
+/// Halvings of a ring's gap: the edge is found to 1/1024 of it.
+const HALVINGS: u32 = 10;
+
+/// Width of the seam band in texels on either side.
+const SEAM_TEXELS: f64 = 5.0;
+
+/// What the map says of a point, what is true, and why they may differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Judgement {
+    /// Visibility by the map, in [0, 1].
+    pub visibility: f32,
+    /// The point's hemisphere.
+    pub hemisphere: u32,
+    /// Disk coordinates in that hemisphere's map.
+    pub uv: [f64; 2],
+    /// Stored distance of the texel that holds the point; infinite where it is empty.
+    pub stored: f64,
+    /// The point's own distance.
+    pub own: f64,
+    /// True where ray casting sees the light.
+    pub lit: bool,
+    /// True where the rays over the footprint do not all agree.
+    pub edge: bool,
+    /// Distance from the point to what keeps the light from it; infinite where nothing does.
+    pub gap: f64,
+}
+
+/// Judges one point.
+pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
+    let p = bench.to_light(point.world);
+    let light = bench.frame.light;
+    let at = dpsm_lookup(p.narrow(), light);
+    let (hemisphere, uv) = bench.place(point);
+    let size = f64::from(bench.maps.size);
+    let texel = |c: f32| (f64::from(c) * size).floor();
+    let (x, y) = (texel(at.coordinates.x), texel(at.coordinates.y));
+    let depth = match at.mapped {
+        true => bench.maps.depths[bench.maps.index(x as i64, y as i64, at.layer)],
+        false => 1.0,
+    };
+    let stored = match depth < 1.0 {
+        true => dpsm_distance(f64::from(depth), bench.light.near, bench.light.far),
+        false => f64::INFINITY,
+    };
+    let unmapped = !at.mapped; // dark by definition, and so in truth
+    let occluder =
+        bench.truth.occluder(bench.origin, point.world, point.triangle, bench.light.near);
+    let own = p.length();
+    Judgement {
+        visibility: dpsm_visibility(bench.maps, p.narrow(), light, bench.frame.bias),
+        hemisphere,
+        uv: [uv.x, uv.y],
+        stored,
+        own,
+        lit: occluder.is_none() && !unmapped,
+        edge: !unmapped && is_edge(bench, point, [x, y], at.hemisphere),
+        gap: occluder.map_or(f64::INFINITY, |hit| own - hit.distance),
+    }
+}
+
+/// True where the rays over the texels that a lookup reads do not all agree.
+fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) -> bool {
+    let reach = match bench.maps.sampling {
+        crate::scalar::maps::Sampling::Nearest => 0.0,
+        crate::scalar::maps::Sampling::Linear => 1.0,
+    };
+    let sees = bench.sees(point);
+    let steps = f64::from(FOOTPRINT_RAYS - 1) / (1.0 + 2.0 * reach);
+    (0..FOOTPRINT_RAYS * FOOTPRINT_RAYS).any(|i| {
+        let offset = |k: i32| f64::from(k) / steps - reach;
+        let st = Vec2::new(x + offset(i % FOOTPRINT_RAYS), y + offset(i / FOOTPRINT_RAYS));
+        let uv = crate::scalar::paraboloid::dpsm_texture_to_disk(
+            st / bench.light.size,
+            bench.light.guard,
+        );
+        bench.reaches(point, uv, hemisphere).is_some_and(|reaches| reaches != sees)
+    })
+}
+
+/// Distance on the disk from a point to the nearest place where its plane's light changes, in
+/// texels; `None` beyond the widest ring.
+fn edge_distance(bench: &Bench<'_>, point: &Point) -> Option<f64> {
+    let (hemisphere, uv) = bench.place(point);
+    let sees = bench.sees(point);
+    let differs = |azimuth: f64, texels: f64| {
+        let step = Vec2::new(azimuth.cos(), azimuth.sin()) * (texels * bench.texel());
+        bench.reaches(point, uv + step, hemisphere).is_some_and(|reaches| reaches != sees)
+    };
+    let mut inner = 0.0;
+    for outer in RINGS {
+        let nearest = (0..AZIMUTHS)
+            .map(|k| TAU * f64::from(k) / f64::from(AZIMUTHS))
+            .filter(|&azimuth| differs(azimuth, outer))
+            .map(|azimuth| {
+                let (mut same, mut other) = (inner, outer);
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (same + other);
+                    match differs(azimuth, middle) {
+                        true => other = middle,
+                        false => same = middle,
+                    }
+                }
+                other
+            })
+            .min_by(f64::total_cmp);
+        if nearest.is_some() {
+            return nearest;
+        }
+        inner = outer;
+    }
+    None
+}
+
+/// Misclassified points, split by kind and by cause.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ShadowError {
+    /// Points judged.
+    pub points: usize,
+    /// Points inside the near or beyond the far sphere: compared at the sphere.
+    pub outside_spheres: usize,
+    /// Edge points.
+    pub edge_points: usize,
+    /// Lit points that the map shadows.
+    pub false_shadow: usize,
+    /// Shadowed points that the map lights.
+    pub false_light: usize,
+    /// Misclassified points that are not edge points: false shadow.
+    pub faults_shadow: usize,
+    /// Misclassified points that are not edge points: false light.
+    pub faults_light: usize,
+    /// Largest distance from a falsely lit point, edge points left out, to its occluder.
+    pub contact_gap: f64,
+    /// Misclassified points whose true shadow edge lies within 32 texels.
+    pub near_edge: usize,
+    /// Their distance from it in texels: median.
+    pub edge_texels_median: f64,
+    /// The same: largest.
+    pub edge_texels_largest: f64,
+    /// Their distance from it in radians: largest.
+    pub edge_radians_largest: f64,
+    /// Points within five texels of the seam.
+    pub seam_points: usize,
+    /// Of those, misclassified.
+    pub seam_misclassified: usize,
+}
+
+impl ShadowError {
+    /// Misclassified points.
+    pub fn misclassified(&self) -> usize {
+        self.false_shadow + self.false_light
+    }
+
+    /// Misclassified points that resolution does not explain; the goal is none.
+    pub fn faults(&self) -> usize {
+        self.faults_shadow + self.faults_light
+    }
+}
+
+/// Judges all points; `point_done` is called after each.
+pub fn shadow_error(
+    bench: &Bench<'_>,
+    points: &[Point],
+    point_done: impl Fn() + Sync,
+) -> ShadowError {
+    let judged: Vec<(Judgement, Option<f64>)> = points
+        .par_iter()
+        .map(|point| {
+            let judgement = judge(bench, point);
+            let wrong = (judgement.visibility >= 0.5) != judgement.lit;
+            let distance = if wrong { edge_distance(bench, point) } else { None };
+            point_done();
+            (judgement, distance)
+        })
+        .collect();
+    let mut error = ShadowError { points: points.len(), ..ShadowError::default() };
+    let (near, far) = (bench.light.near, bench.light.far);
+    let mut texels = Vec::new();
+    for (judgement, distance) in judged {
+        let r = judgement.uv[0].hypot(judgement.uv[1]);
+        let seam = r >= 1.0 - SEAM_TEXELS * bench.texel();
+        error.seam_points += usize::from(seam);
+        error.edge_points += usize::from(judgement.edge);
+        error.outside_spheres += usize::from(!(near..=far).contains(&judgement.own));
+        if (judgement.visibility >= 0.5) == judgement.lit {
+            continue;
+        }
+        error.seam_misclassified += usize::from(seam);
+        match judgement.lit {
+            true => {
+                error.false_shadow += 1;
+                error.faults_shadow += usize::from(!judgement.edge);
+            }
+            false => {
+                error.false_light += 1;
+                error.faults_light += usize::from(!judgement.edge);
+                if !judgement.edge && judgement.gap.is_finite() {
+                    error.contact_gap = error.contact_gap.max(judgement.gap);
+                }
+            }
+        }
+        if let Some(distance) = distance {
+            texels.push(distance);
+            let [u, v] = judgement.uv;
+            let radians = distance * bench.pitch(Vec2::new(u, v));
+            error.edge_radians_largest = error.edge_radians_largest.max(radians);
+        }
+    }
+    texels.sort_by(f64::total_cmp);
+    error.near_edge = texels.len();
+    error.edge_texels_median = percentile(&texels, 0.5);
+    error.edge_texels_largest = texels.last().copied().unwrap_or(0.0);
+    error
+}
+
+/// Error of a filtered visibility against the true coverage of the kernel's cone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PenumbraError {
+    /// Half-angle of the cone in texels at each point.
+    pub cone_texels: f64,
+    /// Points.
+    pub points: usize,
+    /// Root of the mean squared error over all points.
+    pub rmse: f64,
+    /// Points whose true coverage is neither 0 nor 1.
+    pub penumbra_points: usize,
+    /// Root of the mean squared error over those.
+    pub penumbra_rmse: f64,
+}
+
+/// Rays of a cone.
+const CONE_RAYS: u32 = 64;
+
+/// The share of a cone's rays that reach the receiver's plane unhindered: Vogel's spiral over the
+/// spherical cap of half-angle `half_angle` around the point's direction.
+pub fn coverage(bench: &Bench<'_>, point: &Point, half_angle: f64) -> f64 {
+    let axis = (point.world - bench.origin).normalize_or_zero();
+    let (side, other) = axis.any_orthonormal_pair();
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    let (mut taken, mut lit) = (0, 0);
+    for k in 0..CONE_RAYS {
+        let share = (f64::from(k) + 0.5) / f64::from(CONE_RAYS);
+        // even in solid angle: 1 - cos grows with the share
+        let cosine = 1.0 - share * (1.0 - half_angle.min(FRAC_PI_2).cos());
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let (sin, cos) = (golden * f64::from(k)).sin_cos();
+        let direction: DVec3 = axis * cosine + (side * cos + other * sin) * sine;
+        let p = bench.to_light(bench.origin + direction);
+        let hemisphere = crate::scalar::hemisphere::dpsm_hemisphere(p);
+        let flipped = crate::scalar::hemisphere::dpsm_flip(p, hemisphere);
+        let uv = crate::scalar::paraboloid::dpsm_project(flipped);
+        if let Some(reaches) = bench.reaches(point, uv, hemisphere) {
+            taken += 1;
+            lit += u32::from(reaches);
+        }
+    }
+    f64::from(lit) / f64::from(taken.max(1))
+}
+
+/// Compares the map's visibility with the true coverage of a cone as large as the filter's
+/// kernel: the texel, or the 2 x 2 texels, that a lookup reads.
+pub fn penumbra_error(
+    bench: &Bench<'_>,
+    points: &[Point],
+    point_done: impl Fn() + Sync,
+) -> PenumbraError {
+    let side = match bench.maps.sampling {
+        crate::scalar::maps::Sampling::Nearest => 1.0,
+        crate::scalar::maps::Sampling::Linear => 2.0,
+    };
+    let cone_texels = side / PI.sqrt(); // a disk of the kernel's area
+    let errors: Vec<(f64, f64)> = points
+        .par_iter()
+        .filter_map(|point| {
+            let p = bench.to_light(point.world).narrow();
+            let (hemisphere, uv) = bench.place(point);
+            let visibility = dpsm_visibility(bench.maps, p, bench.frame.light, bench.frame.bias);
+            let truth = coverage(bench, point, cone_texels * bench.pitch(uv));
+            point_done();
+            (hemisphere < bench.frame.light.hemispheres)
+                .then(|| (f64::from(visibility) - truth, truth))
+        })
+        .collect();
+    let rmse = |errors: &mut dyn Iterator<Item = f64>| {
+        let (mut sum, mut count) = (0.0, 0_usize);
+        errors.for_each(|error| {
+            sum += error * error;
+            count += 1;
+        });
+        ((sum / count.max(1) as f64).sqrt(), count)
+    };
+    let partial = |&&(_, truth): &&(f64, f64)| truth > 0.0 && truth < 1.0;
+    let (rmse_all, count) = rmse(&mut errors.iter().map(|(error, _)| *error));
+    let (penumbra_rmse, penumbra_points) =
+        rmse(&mut errors.iter().filter(partial).map(|(error, _)| *error));
+    PenumbraError { cone_texels, points: count, rmse: rmse_all, penumbra_points, penumbra_rmse }
+}
