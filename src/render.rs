@@ -1,5 +1,6 @@
 //! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
 
+use std::ops::Range;
 use std::time::Duration;
 
 use glam::{DVec3, Vec3};
@@ -144,6 +145,8 @@ pub struct Frame {
     pub vertices: Vec<Vertex>,
     /// Triangles.
     pub triangles: Vec<[u32; 3]>,
+    /// Name and triangles of each mesh.
+    pub meshes: Vec<(String, Range<u32>)>,
     /// The light.
     pub light: DpsmLight<f32>,
     /// The light's linear colour.
@@ -300,6 +303,7 @@ impl Frame {
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
         let mut vertices = Vec::new();
         let mut triangles = Vec::new();
+        let mut meshes = Vec::new();
         for mesh in &scene.meshes {
             let base = vertices.len() as u32;
             let corner = |(&position, &normal): (&Vec3, &Vec3)| Vertex {
@@ -308,7 +312,9 @@ impl Frame {
                 albedo: mesh.albedo,
             };
             vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(corner));
+            let first = triangles.len() as u32;
             triangles.extend(mesh.triangles.iter().map(|t| t.map(|index| base + index)));
+            meshes.push((mesh.name.clone(), first..triangles.len() as u32));
         }
         let bias = settings.bias.unwrap_or_else(|| constant_bias(settings.size, settings.format));
         if !(0.0..0.5).contains(&bias) {
@@ -338,7 +344,7 @@ impl Frame {
             padding: 0,
         };
         let view = View::new(camera, settings.image)?;
-        Ok(Self { vertices, triangles, light, color: Vec3::ONE, bias, view, settings })
+        Ok(Self { vertices, triangles, meshes, light, color: Vec3::ONE, bias, view, settings })
     }
 }
 

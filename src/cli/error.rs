@@ -67,6 +67,14 @@ pub enum CliError {
     /// The adapter.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// Maps that cannot be encoded.
+    #[error("cannot encode {}: {message}", path.display())]
+    Exr {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        message: String,
+    },
     /// An image that cannot be encoded.
     #[error("cannot encode {}: {source}", path.display())]
     Encode {
@@ -84,7 +92,8 @@ impl CliError {
             CliError::Gpu(
                 GpuError::Rejected { .. } | GpuError::Lost { .. } | GpuError::OutOfMemory { .. },
             )
-            | CliError::Encode { .. } => 1,
+            | CliError::Encode { .. }
+            | CliError::Exr { .. } => 1,
             _ => 2,
         }
     }

@@ -2,6 +2,7 @@
 
 mod error;
 mod eval;
+mod measure;
 mod output;
 mod render;
 mod setup;
@@ -42,7 +43,8 @@ Examples:
   dpsm render atrium.obj --light 0,4,0 --size 2048 -o atrium.png
   dpsm link visibility shade -o shadows.wgsl
   dpsm validate my-shader.wesl
-  dpsm eval dpsm_project --input points.csv";
+  dpsm eval dpsm_project --input points.csv
+  dpsm measure brabec-room --walls 1 --size 512";
 
 /// Which implementation computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -63,6 +65,9 @@ enum Command {
     Link(text::LinkArguments),
     Validate(text::ValidateArguments),
     Eval(eval::EvalArguments),
+    Bake(measure::BakeArguments),
+    Probe(measure::ProbeArguments),
+    Measure(measure::MeasureArguments),
 }
 
 /// Runs the command.
@@ -75,6 +80,9 @@ pub fn run(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Link(link)) => text::link(&link),
         Some(Command::Validate(validate)) => text::validate(&validate),
         Some(Command::Eval(eval)) => eval::eval(adapter, &eval),
+        Some(Command::Bake(bake)) => measure::bake(adapter, &bake),
+        Some(Command::Probe(probe)) => measure::probe(adapter, &probe),
+        Some(Command::Measure(measure)) => measure::measure(adapter, &measure),
     }
 }
 

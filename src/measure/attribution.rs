@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Bench, Point};
+use super::{Bench, PenumbraError, Point};
 use crate::render::Format;
 use crate::scalar::depth::dpsm_depth;
 use crate::scalar::float::{Vec2, Vec3};
@@ -21,8 +21,8 @@ pub struct Source {
     pub name: &'static str,
     /// Largest error measured.
     pub measured: f64,
-    /// The bound at that place, or the formula's prediction.
-    pub predicted: f64,
+    /// The bound, or the formula's prediction, at that place; `None` where there is none.
+    pub predicted: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,
     /// Where: a mesh, or a point.
@@ -32,28 +32,27 @@ pub struct Source {
 /// Points along an arc or a side of a triangle at which errors are looked for.
 const STEPS: u32 = 32;
 
-/// Every source that the library has so far.
-pub fn attribute(bench: &Bench<'_>, points: &[Point], contact_gap: f64) -> Vec<Source> {
+/// Every source that the library has so far; the filter's is the penumbra error measured before.
+pub fn attribute(bench: &Bench<'_>, points: &[Point], penumbra: &PenumbraError) -> Vec<Source> {
     let all = 0..bench.frame.triangles.len() as u32;
-    let quantum = f64::from(bench.frame.settings.format.quantum());
-    let depth_range = bench.light.far - bench.light.near;
     vec![
         arithmetic(bench, points),
         storage(bench, points, bench.frame.settings.format),
         resolution(bench, points),
         bowed_edges(bench, all.clone()),
         affine_depth(bench, all),
+        bias(bench, points),
         Source {
-            name: "bias",
-            measured: contact_gap,
-            predicted: (f64::from(bench.frame.bias) + quantum) * depth_range,
-            unit: "world units, contact gap",
+            name: "filter",
+            measured: penumbra.penumbra_rmse,
+            predicted: None,
+            unit: "RMSE of the visibility in the penumbra",
             place: String::new(),
         },
     ]
 }
 
-/// The place of the largest ratio of measured to predicted, or of the largest measured value.
+/// The source with the largest measured value.
 fn largest(sources: impl ParallelIterator<Item = Source>, empty: Source) -> Source {
     sources.reduce(|| empty.clone(), |a, b| if b.measured > a.measured { b } else { a })
 }
@@ -64,7 +63,7 @@ fn arithmetic(bench: &Bench<'_>, points: &[Point]) -> Source {
     let source = |measured, predicted, place| Source {
         name: "f32 arithmetic",
         measured,
-        predicted,
+        predicted: Some(predicted),
         unit: "world units of distance",
         place,
     };
@@ -86,7 +85,9 @@ fn storage(bench: &Bench<'_>, points: &[Point], format: Format) -> Source {
         name: "storage format",
         measured,
         // a depth is rounded to f32 before it is stored: half an eps of at most 1
-        predicted: (f64::from(format.quantum()) + 0.5 * f64::from(f32::EPSILON)) * (far - near),
+        predicted: Some(
+            (f64::from(format.quantum()) + 0.5 * f64::from(f32::EPSILON)) * (far - near),
+        ),
         unit: "world units of distance",
         place,
     };
@@ -105,7 +106,7 @@ fn resolution(bench: &Bench<'_>, points: &[Point]) -> Source {
     let source = |measured, place| Source {
         name: "resolution",
         measured,
-        predicted: std::f64::consts::FRAC_1_SQRT_2,
+        predicted: Some(std::f64::consts::FRAC_1_SQRT_2),
         unit: "texels from the true edge",
         place,
     };
@@ -135,6 +136,27 @@ fn resolution(bench: &Bench<'_>, points: &[Point]) -> Source {
     largest(points.par_iter().map(at), source(0.0, String::new()))
 }
 
+/// Bias: with exact distances, a point within the bias behind its occluder is lit. The largest such
+/// distance, the contact gap; it cannot exceed the bias.
+fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
+    let bias = f64::from(bench.frame.bias) * (bench.light.far - bench.light.near);
+    let source = |measured, place| Source {
+        name: "bias",
+        measured,
+        predicted: Some(bias),
+        unit: "world units of contact gap",
+        place,
+    };
+    let at = |point: &Point| {
+        let near = bench.light.near;
+        let occluder = bench.truth.occluder(bench.origin, point.world, point.triangle, near);
+        let own = (point.world - bench.origin).length();
+        let gap = occluder.map(|hit| own - hit.distance).filter(|gap| *gap <= bias);
+        source(gap.unwrap_or(0.0), format!("{}", point.world))
+    };
+    largest(points.par_iter().map(at), source(0.0, String::new()))
+}
+
 /// Bowed edges: how far the straight edges of triangles are from the arcs that they stand for, in
 /// texels. Predicted: the sagitta c^2 |m_z| N / 16 of a chord c whose plane through the light has
 /// the unit normal m, divided by 1 + guard.
@@ -144,7 +166,7 @@ pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     let source = |measured, predicted, place| Source {
         name: "bowed edges",
         measured,
-        predicted,
+        predicted: Some(predicted),
         unit: "texels",
         place,
     };
@@ -181,16 +203,16 @@ pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
 }
 
 /// Affine depth: how far the distance that is interpolated over a triangle's image is from that
-/// of its plane there, as a share of the plane's distance from the light. Predicted:
-/// phi^2 / 8 for the triangle's angular size phi.
+/// of the triangle there, as a share of it. Predicted: phi^2 / 8 (1 + sin^2 a) / cos^2 a for the
+/// triangle's angular size phi and the steepest incidence a at a corner (docs/measure.md).
 ///
-/// Triangles with all corners in the stored disk of a hemisphere and a plane that is not edge-on.
+/// Triangles with all corners in the stored disk of a hemisphere.
 pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     let source = |measured, predicted, place| Source {
         name: "affine depth",
         measured,
-        predicted,
-        unit: "of the plane's distance",
+        predicted: Some(predicted),
+        unit: "of the distance",
         place,
     };
     let of_hemisphere = |triangle: u32, hemisphere: u32| {
@@ -198,9 +220,10 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
         let disk = corners.map(dpsm_project);
         let [a, b, c] = corners;
         let normal = cross(b - a, c - a);
-        let height = (normal.dot(a) / normal.length()).abs();
         let outside = disk.iter().any(|uv| uv.length() > 1.0 + bench.light.guard);
-        if outside || hemisphere >= bench.maps.layers || height.is_nan() || height == 0.0 {
+        let cosines = corners.map(|p| (normal.dot(p) / (normal.length() * p.length())).abs());
+        let steepest = cosines.into_iter().fold(1.0, f64::min);
+        if outside || hemisphere >= bench.maps.layers || steepest.is_nan() || steepest == 0.0 {
             return source(0.0, 0.0, String::new());
         }
         let lengths = corners.map(|corner| corner.length());
@@ -208,16 +231,18 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
         for i in 0..=STEPS {
             for j in 0..=STEPS - i {
                 let weights = [i, j, STEPS - i - j].map(|k| f64::from(k) / f64::from(STEPS));
-                let uv = disk[0] * weights[0] + disk[1] * weights[1] + disk[2] * weights[2];
-                let affine: f64 = weights.iter().zip(lengths).map(|(k, l)| k * l).sum();
-                let d = crate::scalar::paraboloid::dpsm_unproject(uv);
-                let exact = normal.dot(a) / normal.dot(d);
-                worst = worst.max((affine - exact).abs() / height);
+                // a point of the triangle, and the weights of its place in the straight image
+                let p = a * weights[0] + b * weights[1] + c * weights[2];
+                let Some(image) = image_weights(disk, dpsm_project(p)) else { continue };
+                let affine: f64 = image.iter().zip(lengths).map(|(k, l)| k * l).sum();
+                worst = worst.max((affine - p.length()).abs() / p.length());
             }
         }
         let angle = |p: Vec3<f64>, q: Vec3<f64>| cross(p, q).length().atan2(p.dot(q));
         let phi = angle(a, b).max(angle(b, c)).max(angle(c, a));
-        source(worst, phi * phi / 8.0, place(bench, triangle))
+        let square = steepest * steepest;
+        let predicted = phi * phi / 8.0 * (2.0 - square) / square;
+        source(worst, predicted, place(bench, triangle))
     };
     let of_triangle = |triangle: u32| {
         let [front, back] = [0, 1].map(|hemisphere| of_hemisphere(triangle, hemisphere));
@@ -226,10 +251,24 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     largest(triangles.into_par_iter().map(of_triangle), source(0.0, 0.0, String::new()))
 }
 
+/// Barycentric weights of a place in a triangle on the disk; `None` outside it.
+fn image_weights(disk: [Vec2<f64>; 3], at: Vec2<f64>) -> Option<[f64; 3]> {
+    let doubled = |a: Vec2<f64>, b: Vec2<f64>, c: Vec2<f64>| {
+        let (ab, ac) = (b - a, c - a);
+        ab.x * ac.y - ab.y * ac.x
+    };
+    let [a, b, c] = disk;
+    let area = doubled(a, b, c);
+    let weights = [doubled(at, b, c), doubled(a, at, c), doubled(a, b, at)].map(|k| k / area);
+    weights.iter().all(|weight| *weight >= 0.0).then_some(weights)
+}
+
 fn place(bench: &Bench<'_>, triangle: u32) -> String {
     let [a, b, c] = bench.corners(triangle);
     let middle: DVec3 = (a + b + c) / 3.0;
-    format!("triangle {triangle} around {middle:.3}")
+    let holds = |(_, triangles): &&(String, Range<u32>)| triangles.contains(&triangle);
+    let mesh = bench.frame.meshes.iter().find(holds).map_or("", |(name, _)| name);
+    format!("mesh `{mesh}` around {middle:.3}")
 }
 
 fn cross(a: Vec3<f64>, b: Vec3<f64>) -> Vec3<f64> {

@@ -150,7 +150,8 @@ pub struct ShadowError {
     pub faults_shadow: usize,
     /// Misclassified points that are not edge points: false light.
     pub faults_light: usize,
-    /// Largest distance from a falsely lit point, edge points left out, to its occluder.
+    /// Largest distance from a falsely lit point to its occluder, where the map does hold something
+    /// nearer than the point and the bias alone lights it; edge points left out.
     pub contact_gap: f64,
     /// Misclassified points whose true shadow edge lies within 32 texels.
     pub near_edge: usize,
@@ -215,7 +216,8 @@ pub fn shadow_error(
             false => {
                 error.false_light += 1;
                 error.faults_light += usize::from(!judgement.edge);
-                if !judgement.edge && judgement.gap.is_finite() {
+                let by_bias = judgement.stored < judgement.own;
+                if !judgement.edge && by_bias && judgement.gap.is_finite() {
                     error.contact_gap = error.contact_gap.max(judgement.gap);
                 }
             }
