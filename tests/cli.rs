@@ -301,3 +301,133 @@ fn eval_names_the_line_and_column_of_a_bad_record() {
     refused("eval-name", &["eval", "dpsm_projct"], &["dpsm_projct", "`dpsm_project`"]);
     refused("eval-texture", &["eval", "dpsm_visibility"], &["dpsm_visibility", "texture"]);
 }
+
+#[test]
+fn bake_writes_distances_and_the_lights_parameters() {
+    use exr::prelude::*;
+    let folder = folder("bake");
+    let arguments =
+        ["bake", "brabec-room", "--adapter", "cpu", "--size", "64", "-o", "maps.exr", "--json"];
+    let output = dpsm(&folder, &arguments);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(files(&folder), ["maps.exr", "maps.json"]);
+    let read = |name| std::fs::read(folder.join(name)).unwrap();
+    let light: serde_json::Value = serde_json::from_slice(&read("maps.json")).unwrap();
+    let stdout: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(stdout["light"], light);
+    assert_eq!(light["position"], serde_json::json!([0.0, 2.0, 0.0]));
+    let image = read_all_flat_layers_from_file(folder.join("maps.exr")).unwrap();
+    let names: Vec<_> =
+        image.layer_data.iter().map(|layer| layer.attributes.layer_name.clone().unwrap()).collect();
+    assert_eq!(names, [Text::from("front"), Text::from("back")]);
+    for layer in &image.layer_data {
+        assert_eq!(layer.size, Vec2(64, 64));
+        assert_eq!(layer.channel_data.list[0].name, Text::from("distance"));
+        let distances: Vec<f32> = layer.channel_data.list[0].sample_data.values_as_f32().collect();
+        // corners are outside the disk; the middle sees floor or ceiling, 2 away, by a vertex
+        assert_eq!(distances[0], f32::INFINITY);
+        let middle = distances[32 * 64 + 32];
+        assert!((1.9..2.1).contains(&middle), "{middle}");
+    }
+}
+
+#[test]
+fn probe_judges_each_line_in_order() {
+    let folder = folder("probe");
+    // on the floor in the light; under the box; beyond far; at the light itself
+    let points = "x,y,z,nx,ny,nz\n0.1,0,0.2,0,1,0\n0.7,0,-1.3,0,1,0\n50,0,0,0,1,0\n0,2,0,0,1,0\n";
+    std::fs::write(folder.join("points.csv"), points).unwrap();
+    let probe = ["probe", "brabec-room", "--adapter", "cpu", "--points", "points.csv"];
+    let output = dpsm(&folder, &probe);
+    let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.success(), "{stderr}");
+    assert!(stderr.contains("2 points lie inside near"), "{stderr}");
+    let rows: Vec<Vec<&str>> = stdout.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 5);
+    assert_eq!(rows[0], ["visibility", "hemisphere", "u", "v", "stored", "own", "truth", "edge"]);
+    let column = |row: usize, name: &str| -> f64 {
+        let index = rows[0].iter().position(|n| *n == name).unwrap();
+        rows[row][index].parse().unwrap()
+    };
+    assert_eq!((column(1, "visibility"), column(1, "truth"), column(1, "edge")), (1.0, 1.0, 0.0));
+    assert_eq!((column(2, "visibility"), column(2, "truth")), (0.0, 0.0));
+    let own = |x: f64, y: f64, z: f64| (x * x + (y - 2.0) * (y - 2.0) + z * z).sqrt();
+    // coordinates pass through f64, the light's position and rotation through f32
+    for (row, [x, y, z]) in [[0.1, 0.0, 0.2], [0.7, 0.0, -1.3], [50.0, 0.0, 0.0]].iter().enumerate()
+    {
+        let exact = own(*x, *y, *z);
+        assert!((column(row + 1, "own") - exact).abs() <= 1e-6 * exact, "{row}");
+    }
+    assert_eq!(column(4, "visibility"), 1.0, "nothing lies between the light and itself");
+    let json = dpsm(&folder, &[&probe[..], &["--json", "-o", "judged.json"]].concat());
+    assert!(json.status.success(), "{}", text(&json.stderr));
+    let judged = std::fs::read(folder.join("judged.json")).unwrap();
+    let judged: Vec<serde_json::Value> = serde_json::from_slice(&judged).unwrap();
+    assert_eq!(judged.len(), 4);
+    assert_eq!(judged[1]["truth"], 0);
+}
+
+#[test]
+fn probe_names_the_line_and_column_of_a_bad_point() {
+    let folder = folder("probe-bad");
+    let path = |name: &str, text: &str| {
+        std::fs::write(folder.join(name), text).unwrap();
+        folder.join(name).display().to_string()
+    };
+    let probe = |path| ["probe", "cornell", "--adapter", "cpu", "--points", path];
+    let number = path("number.csv", "x,y,z\n1,2,3\n1,2,east\n");
+    refused("probe-number", &probe(&number), &["number.csv:3", "`z`", "`east`"]);
+    let infinite = path("infinite.csv", "x,y,z\n1e999,2,3\n");
+    refused("probe-infinite", &probe(&infinite), &["infinite.csv:2", "`x`", "finite"]);
+    let header = path("header.csv", "a,b,c\n1,2,3\n");
+    refused("probe-header", &probe(&header), &["header.csv:1", "a,b,c", "x,y,z"]);
+    let short = path("short.csv", "x,y,z\n1,2\n");
+    refused("probe-short", &probe(&short), &["short.csv:2"]);
+    let normal = path("normal.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,0\n");
+    refused("probe-normal", &probe(&normal), &["normal.csv:2", "nx,ny,nz"]);
+    refused("probe-missing", &probe("nowhere.csv"), &["nowhere.csv"]);
+}
+
+#[test]
+fn measure_reports_the_same_in_a_table_and_in_json() {
+    let folder = folder("measure");
+    let measure = [
+        "measure",
+        "brabec-room",
+        "--walls",
+        "1",
+        "--size",
+        "128",
+        "--count",
+        "500",
+        "--seed",
+        "5",
+        "--adapter",
+        "cpu",
+    ];
+    let output = dpsm(&folder, &measure);
+    let table = text(&output.stdout);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let output = dpsm(&folder, &[&measure[..], &["--json"]].concat());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let all = &json["map"]["all"];
+    assert!(all["off_1e2"].as_u64() > all["covered"].as_u64().map(|covered| covered / 2));
+    for count in [&all["texels"], &all["missing"], &json["shadow"]["edge_points"]] {
+        assert!(table.contains(&count.to_string()), "{count} is not in\n{table}");
+    }
+    let sources: Vec<_> = json["sources"].as_array().unwrap().iter().collect();
+    let names = sources.iter().map(|source| source["name"].as_str().unwrap());
+    let expected = [
+        "f32 arithmetic",
+        "storage format",
+        "resolution",
+        "bowed edges",
+        "affine depth",
+        "bias",
+        "filter",
+    ];
+    assert_eq!(names.collect::<Vec<_>>(), expected);
+    for name in expected {
+        assert!(table.contains(name), "{name} is not in\n{table}");
+    }
+}
