@@ -21,7 +21,8 @@ use super::{AdapterChoice, CliError, describe};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 One layer a hemisphere (`front`, `back`) with the channel `distance`: f32, world units, infinite
-where nothing was hit. MAPS.json beside it holds the light's parameters.
+where nothing was hit. MAPS.json beside it holds the light's parameters. Nothing is
+chosen at random.
 
 Example:
   dpsm bake brabec-room --light=-1,2,0.5 --size 512 -o maps.exr")]
@@ -43,7 +44,7 @@ The input's header is x,y,z or x,y,z,nx,ny,nz: world units, unit normals. One li
 each line of input, in its order, with the header
 visibility,hemisphere,u,v,stored,own,truth,edge: u and v are disk coordinates in the hemisphere's
 map, stored and own distances from the light, truth 1 where ray casting sees the light, edge 1
-where the rays over the texel's footprint do not all agree.
+where the rays over the texel's footprint do not all agree. Nothing is chosen at random.
 
 Example:
   dpsm probe brabec-room --points points.csv --size 512 -o judged.csv")]
@@ -95,7 +96,10 @@ fn prepare(
 ) -> Result<(String, Frame, DepthMaps, Option<Device>), CliError> {
     let (scene, frame) = setup.frame(IMAGE, Lookup::Pixel, false)?;
     let device = adapter.open()?;
+    let spinner = ProgressBar::new_spinner().with_message("maps");
+    spinner.enable_steady_tick(std::time::Duration::from_millis(100));
     let maps = make_maps(device.as_ref(), &frame)?;
+    spinner.finish_and_clear();
     Ok((scene, frame, maps, device))
 }
 

@@ -136,7 +136,7 @@ impl Draft<'_> {
         let mut warn = |what: String| warnings.push(format!("mesh `{}`: {what}", mesh.name));
         if let Some(first) = non_finite.vertices.first() {
             warn(format!(
-                "{} non-finite vertices (first: {}), {} triangles dropped",
+                "{} non-finite vertices (first: number {} of the mesh, from 0), {} triangles dropped",
                 non_finite.vertices.len(),
                 first,
                 non_finite.triangles

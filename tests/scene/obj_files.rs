@@ -165,7 +165,7 @@ fn unusable_vertices_and_normals_are_counted_named_and_dropped() {
         scene.warnings,
         [
             // Counted from zero in the mesh, in the order of use.
-            "mesh `x`: 2 non-finite vertices (first: 2), 3 triangles dropped",
+            "mesh `x`: 2 non-finite vertices (first: number 2 of the mesh, from 0), 3 triangles dropped",
             "mesh `x`: 2 corners have no usable normal and got their face's",
         ]
     );
@@ -258,7 +258,7 @@ fn files_without_triangles_say_what_was_found() {
         error(&all_bad),
         format!(
             "`all_bad.obj` has no triangles, only 1 faces; mesh `unnamed_object`: \
-             1 non-finite vertices (first: 0), 1 triangles dropped; {remedy}"
+             1 non-finite vertices (first: number 0 of the mesh, from 0), 1 triangles dropped; {remedy}"
         )
     );
 }
