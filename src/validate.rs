@@ -9,8 +9,8 @@ use std::thread;
 use naga::Span;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-use crate::link::Linked;
 use crate::link::token::{Source, tokenize};
+use crate::link::{Catalogue, Linked, ModuleInfo};
 
 /// A module that naga accepts.
 #[derive(Debug)]
@@ -39,7 +39,10 @@ pub enum ValidateError {
 
     /// An expression or a chain of `else` that is too long for naga, which would overflow its
     /// stack.
-    #[error("{file}: more than {limit} operators in a row, or branches in a function")]
+    #[error(
+        "{file}: more than {limit} operators in a row, or branches in a function; split the expression \
+         or the function"
+    )]
     TooDeep { file: String, limit: usize },
 }
 
@@ -149,6 +152,7 @@ fn check(linked: &Linked) -> Result<Validated, ValidateError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let labels = error.labels().map(|(span, text)| (span, text.to_owned()));
         let notes = error.notes().map(|note| format!("note: {note}"));
+        let notes = notes.chain(missing_import(error.message()));
         ValidateError::Parse(Report {
             name: linked.name().to_owned(),
             message: error.message().to_owned(),
@@ -173,6 +177,15 @@ fn check(linked: &Linked) -> Result<Validated, ValidateError> {
         })
     })?;
     Ok(Validated { module, info })
+}
+
+/// The import to add, where an unknown identifier is one of dpsm's own.
+fn missing_import(message: &str) -> Option<String> {
+    let name = message.split('`').nth(1)?;
+    let modules = Catalogue::dpsm().ok()?.describe();
+    let declares = |module: &&ModuleInfo| module.items.iter().any(|item| item.name == name);
+    let module = &modules.iter().find(declares)?.name;
+    Some(format!("note: add `import dpsm::{module}::{{{name}}};` at the top"))
 }
 
 fn labels(linked: &Linked, spans: impl Iterator<Item = (Span, String)>) -> Vec<Label> {

@@ -747,10 +747,18 @@ fn what_naga_cannot_recurse_into_is_refused() {
     let linked = Catalogue::new().link_source("my.wesl", &text).unwrap();
     assert_eq!(
         validate(&linked).unwrap_err().to_string(),
-        "my.wesl: more than 2000 operators in a row, or branches in a function"
+        "my.wesl: more than 2000 operators in a row, or branches in a function; split the expression or the function"
     );
     let list = "1.0 + 2.0, ".repeat(3000);
     let text = format!("const a = array<f32, 3000>({list});");
     let linked = Catalogue::new().link_source("my.wesl", &text).unwrap();
     validate(&linked).unwrap();
+}
+
+#[test]
+fn function_used_without_its_import_is_told_which_import_to_add() {
+    let text = "fn f(l: f32) -> f32 { return dpsm_depth(l, 0.1, 1.0); }";
+    let linked = dpsm::link_source("my.wesl", text).unwrap();
+    let error = dpsm::validate(&linked).unwrap_err().to_string();
+    assert!(error.contains("add `import dpsm::depth::{dpsm_depth};`"), "{error}");
 }
