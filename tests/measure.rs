@@ -144,6 +144,27 @@ fn near_left_out_of_the_depth_is_seen() {
 }
 
 #[test]
+fn texels_are_counted_by_how_far_they_are_off() {
+    let frame = room(1, settings());
+    let truth = truth_of(&frame);
+    let exact = exact_maps(&frame, &truth);
+    let (near, far) = (frame.light.near, frame.light.far);
+    for (factor, above_1e2, above_1e3) in [(0.9995, 0, 0), (0.995, 0, 1), (0.98, 1, 1)] {
+        let mut maps = exact.clone();
+        for depth in maps.depths.iter_mut().filter(|depth| **depth < 1.0) {
+            *depth = dpsm_depth((near + *depth * (far - near)) * factor, near, far);
+        }
+        let error = map_error(&Bench::new(&frame, &maps, &truth), || ()).all;
+        let expected = (error.covered * above_1e2, error.covered * above_1e3);
+        assert_eq!((error.off_1e2, error.off_1e3), expected, "factor {factor}");
+        // rounding to f32 of depths up to 1, over distances from 0.3 m of a range of about 3.5 m
+        let off = f64::from(1.0_f32 - factor as f32);
+        assert!((error.largest - off).abs() <= 20.0 * EPS, "{}", error.largest);
+        assert!((error.percentile_99 - off).abs() <= 20.0 * EPS, "{}", error.percentile_99);
+    }
+}
+
+#[test]
 fn missing_and_extra_texels_are_counted() {
     let frame = half_covered(settings());
     let truth = truth_of(&frame);
