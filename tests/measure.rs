@@ -158,7 +158,7 @@ fn texels_are_counted_by_how_far_they_are_off() {
         let expected = (error.covered * above_1e2, error.covered * above_1e3);
         assert_eq!((error.off_1e2, error.off_1e3), expected, "factor {factor}");
         // rounding to f32 of depths up to 1, over distances from 0.3 m of a range of about 3.5 m
-        let off = f64::from(1.0_f32 - factor as f32);
+        let off = f64::from(1.0_f32 - factor);
         assert!((error.largest - off).abs() <= 20.0 * EPS, "{}", error.largest);
         assert!((error.percentile_99 - off).abs() <= 20.0 * EPS, "{}", error.percentile_99);
     }
