@@ -297,7 +297,7 @@ fn eval_names_the_line_and_column_of_a_bad_record() {
     let column = path("column.csv", "p.x,p.y\n1,2\n");
     refused("eval-column", &eval(&column), &["column.csv:1", "`p.z`", "p.x,p.y,p.z"]);
     let short = path("short.csv", "p.x,p.y,p.z\n1,2\n");
-    refused("eval-short", &eval(&short), &["short.csv:2"]);
+    refused("eval-short", &eval(&short), &["short.csv:2", "`p.z`"]);
     refused("eval-name", &["eval", "dpsm_projct"], &["dpsm_projct", "`dpsm_project`"]);
     refused("eval-texture", &["eval", "dpsm_visibility"], &["dpsm_visibility", "texture"]);
 }
@@ -382,9 +382,19 @@ fn probe_names_the_line_and_column_of_a_bad_point() {
     let header = path("header.csv", "a,b,c\n1,2,3\n");
     refused("probe-header", &probe(&header), &["header.csv:1", "a,b,c", "x,y,z"]);
     let short = path("short.csv", "x,y,z\n1,2\n");
-    refused("probe-short", &probe(&short), &["short.csv:2"]);
+    refused("probe-short", &probe(&short), &["short.csv:2", "`z`"]);
     let normal = path("normal.csv", "x,y,z,nx,ny,nz\n1,2,3,0,0,0\n");
     refused("probe-normal", &probe(&normal), &["normal.csv:2", "nx,ny,nz"]);
+    let lines = path("crlf.csv", "\u{feff}x,y,z\r\n1,0,1\r\nx,1,1\r\n");
+    refused("probe-crlf", &probe(&lines), &["crlf.csv:3", "`x`"]);
+    let long = path("long.csv", "x,y,z\n1,2,3,4\n");
+    refused("probe-long", &probe(&long), &["long.csv:2", "`4`", "`z`"]);
+    std::fs::write(folder.join("latin.csv"), b"x,y,z\n1,2,3\n1,\xe9,3\n").unwrap();
+    let latin = folder.join("latin.csv").display().to_string();
+    refused("probe-latin", &probe(&latin), &["latin.csv:3", "UTF-8"]);
+    let count = ["measure", "cornell", "--count", "99999999999"];
+    refused("measure-count", &count, &["--count"]);
+    refused("bake-name", &["bake", "cornell", "-o", "maps.png"], &["maps.png", "EXR"]);
     refused("probe-missing", &probe("nowhere.csv"), &["nowhere.csv"]);
 }
 

@@ -67,9 +67,14 @@ fn square(name: &str, x: f32, y: f32, half: f32) -> Mesh {
 /// A light at the origin, a floor 2 below, and half a floor 1 below whose border is x = 0, right
 /// under the light.
 fn half_covered(settings: Settings) -> Frame {
+    frame_of(vec![square("floor", 0.0, -2.0, 50.0), square("cover", 50.0, -1.0, 50.0)], settings)
+}
+
+/// Meshes around a light at the origin.
+fn frame_of(meshes: Vec<Mesh>, settings: Settings) -> Frame {
     let scene = Scene {
-        name: "half covered".into(),
-        meshes: vec![square("floor", 0.0, -2.0, 50.0), square("cover", 50.0, -1.0, 50.0)],
+        name: "made".into(),
+        meshes,
         lights: Vec::new(),
         camera: None,
         warnings: Vec::new(),
@@ -203,6 +208,185 @@ fn walls_of_8_x_8_quads_bow_half_a_texel_and_err_by_one_and_a_half_percent() {
     let affine = affine_depth(&bench, floor);
     assert_eq!(format!("{:.1}", 100.0 * affine.measured), "1.5");
     assert!(affine.measured <= affine.predicted.unwrap(), "{affine:?}");
+}
+
+#[test]
+fn affine_depth_of_small_triangles_stays_within_its_bound() {
+    let mut rng = common::rng("affine");
+    let mut worst = common::Worst::default();
+    for _ in 0..300 {
+        // a triangle of up to 0.1 rad anywhere around the light, not steeper than 73 degrees
+        let middle = common::unit(&mut rng);
+        let corner = |rng: &mut fastrand::Rng| {
+            let off = common::unit(rng);
+            vec3(middle.x + 0.05 * off.x, middle.y + 0.05 * off.y, middle.z + 0.05 * off.z) * 2.0
+        };
+        let positions = vec![corner(&mut rng), corner(&mut rng), corner(&mut rng)];
+        let normal = (positions[1] - positions[0]).cross(positions[2] - positions[0]).normalize();
+        if positions.iter().any(|p| normal.dot(p.normalize()).abs() < 0.3) {
+            continue;
+        }
+        let mesh = Mesh {
+            name: "triangle".into(),
+            positions,
+            normals: vec![normal; 3],
+            triangles: vec![[0, 1, 2]],
+            albedo: Vec3::ONE,
+        };
+        let frame = frame_of(vec![mesh], settings());
+        let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+        let bench = Bench::new(&frame, &maps, &truth);
+        if left_out(&bench, 0..1) == 0 {
+            let source = affine_depth(&bench, 0..1);
+            worst.note(source.measured, source.predicted.unwrap(), frame.vertices);
+        }
+    }
+    worst.check("affine depth");
+}
+
+#[test]
+fn measures_of_a_box_agree_with_its_closed_form() {
+    // walls at different distances on all six sides, so that no mirror image agrees, and a shield
+    // inside the near sphere that must not count
+    let walls = [(-1.0, 1.5), (-2.0, 2.5), (-3.0, 3.5)];
+    let low = Vec3::from_array(walls.map(|wall| wall.0));
+    let high = Vec3::from_array(walls.map(|wall| wall.1));
+    let corner = |i: u32| {
+        let pick = |bit: u32, k: usize| if i >> bit & 1 == 1 { high[k] } else { low[k] };
+        vec3(pick(0, 0), pick(1, 1), pick(2, 2))
+    };
+    let quads =
+        [[0, 2, 6, 4], [1, 5, 7, 3], [0, 4, 5, 1], [2, 3, 7, 6], [0, 1, 3, 2], [4, 6, 7, 5]];
+    let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    let room = Mesh {
+        name: "box".into(),
+        positions: (0..8).map(corner).collect(),
+        normals: vec![Vec3::Y; 8],
+        triangles,
+        albedo: Vec3::ONE,
+    };
+    let shield = square("shield", 0.0, -0.1, 0.05);
+    let frame = frame_of(vec![room, shield], Settings { near: Some(0.2), ..settings() });
+    let light = frame.light;
+    // the first wall along a direction of the light's space, by formula
+    let distance = |d: [f64; 3]| {
+        let rows = [light.right, light.up, light.forward];
+        let axis = |k: usize| -> f64 {
+            let component =
+                |row: dpsm::scalar::float::Vec3<f32>| f64::from([row.x, row.y, row.z][k]);
+            rows.iter().zip(d).map(|(row, d)| component(*row) * d).sum()
+        };
+        (0..3)
+            .map(|k| {
+                let along = axis(k);
+                f64::from(if along > 0.0 { high[k] } else { low[k] }) / along
+            })
+            .filter(|t| t.is_finite())
+            .fold(f64::INFINITY, f64::min)
+    };
+    let size = f64::from(SIZE);
+    let mut maps = DepthMaps::empty(SIZE, 2, Sampling::Nearest);
+    for hemisphere in 0..2 {
+        for y in 0..SIZE {
+            for x in 0..SIZE {
+                let scale = 2.0 * (1.0 + f64::from(light.guard));
+                let u = ((f64::from(x) + 0.5) / size - 0.5) * scale;
+                let v = (0.5 - (f64::from(y) + 0.5) / size) * scale;
+                let square = u * u + v * v;
+                let z = (1.0 - square) / (1.0 + square);
+                let z = if hemisphere == 0 { z } else { -z };
+                let d = [2.0 * u / (1.0 + square), 2.0 * v / (1.0 + square), z];
+                let (near, far) = (f64::from(light.near), f64::from(light.far));
+                let index = maps.index(x.into(), y.into(), hemisphere);
+                maps.depths[index] = ((distance(d) - near) / (far - near)) as f32;
+            }
+        }
+    }
+    let truth = truth_of(&frame);
+    let bench = Bench::new(&frame, &maps, &truth);
+    let error = map_error(&bench, || ()).all;
+    assert_eq!((error.missing, error.extra), (0, 0));
+    // half an eps of depths up to 1 of a range below 5 over distances from 1, and the rotation's
+    // rounding to f32, eps / 2 in each of three terms
+    assert!(error.largest <= 5.0 * EPS, "{}", error.largest);
+    // every point of the walls sees the light, the shield is inside near
+    for point in bench.points_scattered(500, 4) {
+        let judgement = judge(&bench, &point);
+        let shielded = judgement.own < 0.2;
+        assert!(judgement.lit, "{point:?}");
+        assert!(shielded || (judgement.own - point.world.length()).abs() <= 5.0 * EPS);
+    }
+}
+
+#[test]
+fn faults_are_sorted_by_seam_angle_and_bias() {
+    let frame = half_covered(Settings { near: Some(0.5), far: Some(5.0), ..settings() });
+    let truth = truth_of(&frame);
+    // a texel stores the cover just in front of the receiver: the bias alone lights it
+    let mut maps = exact_maps(&frame, &truth);
+    let point = Bench::new(&frame, &maps, &truth).point_at(DVec3::new(3.0, -2.0, 0.0), None);
+    let (near, far) = (f64::from(frame.light.near), f64::from(frame.light.far));
+    let own = point.world.length();
+    let bias = f64::from(frame.bias) * (far - near);
+    for depth in &mut maps.depths {
+        *depth = ((own - 0.9 * bias - near) / (far - near)) as f32;
+    }
+    let bench = Bench::new(&frame, &maps, &truth);
+    let judgement = judge(&bench, &point);
+    assert_eq!((judgement.visibility, judgement.lit, judgement.edge), (1.0, false, false));
+    // what the texel holds is the receiver's surroundings, not the occluder: no contact gap
+    assert_eq!(shadow_error(&bench, &[point], || ()).contact_gap, 0.0);
+    // below the horizon by four texels' angle: within the seam band; straight down is not
+    let edge = 4.0 * bench.texel();
+    let low = |angle: f64| DVec3::new(-angle.cos(), -angle.sin(), 0.0) * 2.0;
+    let seam = bench.point_at(low(edge), None);
+    let down = bench.point_at(DVec3::new(-0.5, -2.0, 0.0), None);
+    assert_eq!(shadow_error(&bench, &[seam, down], || ()).seam_points, 1);
+    // radians are texels times the pitch where the point is
+    let empty = DepthMaps::empty(SIZE, 2, Sampling::Nearest);
+    let bench = Bench::new(&frame, &empty, &truth);
+    let error = shadow_error(&bench, &[bench.point_at(DVec3::new(0.4, -2.0, 0.0), None)], || ());
+    let angle = 0.2_f64.atan();
+    // the pitch at the point stands for all of the way: it changes by less than theta^2 / 4 of itself
+    let bound = error.edge_radians_largest * (angle * angle / 4.0 + 2.0 / 1024.0);
+    assert!((error.edge_radians_largest - angle).abs() <= bound, "{error:?} {angle}");
+}
+
+#[test]
+fn contact_gap_is_the_distance_to_the_occluder_that_the_bias_forgives() {
+    let settings =
+        Settings { near: Some(0.5), far: Some(6.0), bias: Some(0.4), size: 512, ..settings() };
+    let frame = half_covered(settings);
+    let truth = truth_of(&frame);
+    let maps = exact_maps(&frame, &truth);
+    let bench = Bench::new(&frame, &maps, &truth);
+    // the cover lies halfway: gaps of half the distance, below and above the bias of 0.4 x 5.5
+    let at = |own: f64| bench.point_at(DVec3::new((own * own - 4.0).sqrt(), -2.0, 0.0), None);
+    let points = [at(4.0), at(4.2), at(4.6)];
+    let error = shadow_error(&bench, &points, || ());
+    assert_eq!((error.false_light, error.faults_light), (2, 2));
+    assert!((error.contact_gap - 2.1).abs() <= 1e-9, "{error:?}");
+    let sources = attribute(&bench, &points, &PenumbraError::default());
+    let bias = sources.iter().find(|source| source.name == "bias").unwrap();
+    assert!((bias.measured - 2.1).abs() <= 1e-9, "{bias:?}");
+}
+
+#[test]
+fn footprint_of_linear_sampling_is_wider_than_that_of_the_hard_test() {
+    let frame = half_covered(settings());
+    let truth = truth_of(&frame);
+    let texel = 2.0 * 4.0 / f64::from(SIZE);
+    let edges = |sampling| {
+        let maps = DepthMaps::empty(SIZE, 2, sampling);
+        let bench = Bench::new(&frame, &maps, &truth);
+        let steps = (-400..400).map(|k| f64::from(k) / 100.0 * texel);
+        steps
+            .filter(|x| judge(&bench, &bench.point_at(DVec3::new(*x, -2.0, 0.3), None)).edge)
+            .count()
+    };
+    // hard: the texels on either side of the border, which lies between two; linear: one more each
+    let (hard, linear) = (edges(Sampling::Nearest), edges(Sampling::Linear));
+    assert!(linear > hard + 100, "{hard} and {linear} of 800");
 }
 
 #[test]

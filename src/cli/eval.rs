@@ -10,6 +10,7 @@ use dpsm::scalar::ports::{self, Word};
 use dpsm::ulp::{ulps_apart, ulps_off};
 
 use super::output::write_or_print;
+use super::table::Table;
 use super::{AdapterChoice, CliError};
 
 /// Evaluate one function: on the adapter, by the f32 port, by the f64 reference
@@ -162,34 +163,27 @@ fn integer<T>(word: Word<T>) -> u32 {
 
 /// Reads records by the header's names; a last part of a name is enough where it is unique.
 fn read_records(path: &Path, inputs: &[Component]) -> Result<Vec<Record>, CliError> {
-    let text = super::output::read_text(path)?;
+    let table = Table::read(path)?;
+    let header = &table.header;
     let csv_error = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |error: csv::Error| {
-        let line = error.position().map_or(1, |position| position.line());
-        csv_error(line, error.to_string())
-    };
-    let header = reader.headers().map_err(broken)?.clone();
     let wanted = inputs.iter().map(|c| c.path.as_str()).collect::<Vec<_>>().join(",");
     let column = |component: &Component| {
-        let full = header.iter().position(|name| name == component.path);
+        let full = header.iter().position(|name| *name == component.path);
         let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_string();
         let unique = inputs.iter().filter(|c| last(&c.path) == last(&component.path)).count() == 1;
-        let short = || header.iter().position(|name| unique && name == last(&component.path));
+        let short = || header.iter().position(|name| unique && *name == last(&component.path));
         full.or_else(short).ok_or_else(|| {
             csv_error(1, format!("no column `{}`; the header must name {wanted}", component.path))
         })
     };
     let columns = inputs.iter().map(column).collect::<Result<Vec<_>, _>>()?;
     let mut records = Vec::new();
-    for (index, row) in reader.records().enumerate() {
-        let row = row.map_err(broken)?;
-        let line = row.position().map_or(0, |position| position.line());
+    for (index, (line, row)) in table.records.iter().enumerate() {
         let parse = |(component, &column): (&Component, &usize)| {
-            let field = row.get(column).unwrap_or_default();
+            let field = row[column].as_str();
             word(field, component.kind).ok_or_else(|| {
                 let kind = component.kind.wgsl();
-                csv_error(line, format!("column `{}`: `{field}` is no {kind}", component.path))
+                csv_error(*line, format!("column `{}`: `{field}` is no {kind}", component.path))
             })
         };
         let words = inputs.iter().zip(&columns).map(parse).collect::<Result<Vec<_>, _>>()?;

@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use dpsm::gpu::Device;
 use dpsm::measure::{self, Bench, Judgement, MapError, PenumbraError, Point, ShadowError, Source};
-use dpsm::render::{Frame, Lookup};
+use dpsm::render::{Frame, LARGEST, Lookup};
 use dpsm::scalar::depth::dpsm_distance;
 use dpsm::scalar::maps::DepthMaps;
 use glam::DVec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::output::{Outputs, print, read_text, write_or_print};
-use super::setup::{SetupArguments, make_maps};
+use super::output::{Outputs, print, write_or_print};
+use super::setup::{Names, SetupArguments, make_maps};
+use super::table::Table;
 use super::{AdapterChoice, CliError, describe};
 
 /// Make the maps and write them as EXR, distances in world units
@@ -74,8 +75,8 @@ pub struct MeasureArguments {
     #[command(flatten)]
     setup: SetupArguments,
     /// Surface points to judge
-    #[arg(long, default_value_t = 20_000)]
-    count: usize,
+    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    count: u32,
     /// Scatter the points over all surfaces in place of those that the camera sees
     #[arg(long)]
     scatter: bool,
@@ -115,13 +116,15 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
     let (scene, frame, maps, device) = prepare(adapter, &arguments.setup)?;
     let path = &arguments.output;
     let beside = path.with_extension("json");
-    if beside == *path {
-        let message =
-            format!("{} would hold both maps and parameters: name it .exr", path.display());
-        return Err(CliError::Usage(message));
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
+        return Err(CliError::Usage(format!(
+            "maps are EXR: name {} something.exr",
+            path.display()
+        )));
     }
     let light = frame.light;
     let vector = |v: dpsm::scalar::float::Vec3<f32>| [v.x, v.y, v.z];
+    let names = arguments.setup.names();
     let parameters = serde_json::json!({
         "scene": scene,
         "position": vector(light.position),
@@ -133,9 +136,11 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "guard": light.guard,
         "size": maps.size,
         "hemispheres": light.hemispheres,
-        "format": format!("{:?}", frame.settings.format),
-        "method": format!("{:?}", frame.settings.method),
-        "bias": frame.bias,
+        "format": names.format,
+        "method": names.method,
+        "filter": names.filter,
+        "bias": names.bias,
+        "constant_bias": frame.bias,
         "computed_by": describe(device.as_ref()),
     });
     let mut outputs = Outputs::for_option("-o");
@@ -251,35 +256,38 @@ fn row(judgement: &Judgement) -> Row {
 
 /// Positions, with normals where the header has them.
 fn read_points(path: &Path) -> Result<Vec<(DVec3, Option<DVec3>)>, CliError> {
-    let text = read_text(path)?;
+    let table = Table::read(path)?;
     let fault = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let broken = |error: csv::Error| {
-        fault(error.position().map_or(1, csv::Position::line), error.to_string())
-    };
-    let header: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
     let names = ["x", "y", "z", "nx", "ny", "nz"];
+    let header: Vec<&str> = table.header.iter().map(String::as_str).collect();
     if header != names[..3] && header != names {
         let found = header.join(",");
         let message = format!("the header is `{found}`, and must be x,y,z or x,y,z,nx,ny,nz");
         return Err(fault(1, message));
     }
     let mut points = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(broken)?;
-        let line = record.position().map_or(0, csv::Position::line);
+    for (line, record) in table.records {
         let mut numbers = [0.0; 6];
         for ((field, name), number) in record.iter().zip(names).zip(&mut numbers) {
-            let parsed: Option<f64> = field.parse().ok().filter(|value: &f64| value.is_finite());
+            // as for the light: beyond it squares of distances overflow f32
+            let usable = |value: &f64| value.abs() <= f64::from(LARGEST);
+            let parsed: Option<f64> = field.parse().ok().filter(usable);
             *number = parsed.ok_or_else(|| {
-                fault(line, format!("column `{name}`: `{field}` is not a finite number"))
+                let range = "is not a finite number up to 1e18";
+                fault(line, format!("column `{name}`: `{field}` {range}"))
             })?;
         }
         let [x, y, z, nx, ny, nz] = numbers;
         let normal = match header.len() {
-            6 => Some(DVec3::new(nx, ny, nz).try_normalize().ok_or_else(|| {
-                fault(line, "columns `nx,ny,nz`: the normal has no direction".into())
-            })?),
+            6 => {
+                let normal = DVec3::new(nx, ny, nz);
+                if (normal.length() - 1.0).abs() > 1e-3 {
+                    let message =
+                        format!("columns `nx,ny,nz`: the normal {normal} is not a unit one");
+                    return Err(fault(line, message));
+                }
+                Some(normal.normalize())
+            }
             _ => None,
         };
         points.push((DVec3::new(x, y, z), normal));
@@ -294,10 +302,8 @@ struct Report {
     computed_by: String,
     triangles: usize,
     size: u32,
-    format: String,
-    method: String,
-    filter: String,
-    bias: f32,
+    options: Names,
+    constant_bias: f32,
     seed: u64,
     map: MapError,
     shadow: ShadowError,
@@ -311,6 +317,8 @@ struct Report {
 struct MeshSources {
     mesh: String,
     triangles: usize,
+    /// Triangles that cross a stored disk's border: not in the two sources below.
+    left_out: usize,
     bowed_edges: Source,
     affine_depth: Source,
 }
@@ -321,9 +329,13 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
     let truth = measure::truth_of(&frame);
     let bench = Bench::new(&frame, &maps, &truth);
     let points: Vec<Point> = match arguments.scatter {
-        true => bench.points_scattered(arguments.count, arguments.seed),
-        false => bench.points_from_camera(arguments.count, arguments.seed),
+        true => bench.points_scattered(arguments.count as usize, arguments.seed),
+        false => bench.points_from_camera(arguments.count as usize, arguments.seed),
     };
+    if points.len() < arguments.count as usize {
+        let (seen, asked) = (points.len(), arguments.count);
+        eprintln!("dpsm: the camera sees surfaces through {seen} of {asked} places of the image");
+    }
     let progress = bar("map rows", (maps.size * maps.layers) as usize);
     let map = measure::map_error(&bench, || progress.inc(1));
     progress.finish_and_clear();
@@ -337,6 +349,7 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
     let by_mesh = |(name, triangles): &(String, std::ops::Range<u32>)| MeshSources {
         mesh: name.clone(),
         triangles: triangles.len(),
+        left_out: measure::left_out(&bench, triangles.clone()),
         bowed_edges: measure::bowed_edges(&bench, triangles.clone()),
         affine_depth: measure::affine_depth(&bench, triangles.clone()),
     };
@@ -345,10 +358,8 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         computed_by: describe(device.as_ref()),
         triangles: frame.triangles.len(),
         size: maps.size,
-        format: format!("{:?}", frame.settings.format),
-        method: format!("{:?}", frame.settings.method),
-        filter: format!("{:?}", maps.sampling),
-        bias: frame.bias,
+        options: arguments.setup.names(),
+        constant_bias: frame.bias,
         seed: arguments.seed,
         map,
         shadow,
@@ -365,11 +376,12 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
 fn table(report: &Report) -> String {
     let share = |part: usize, whole: usize| 100.0 * part as f64 / whole.max(1) as f64;
     let mut text = String::new();
-    let Report { scene, computed_by, triangles, size, format, method, filter, bias, .. } = report;
+    let Report { scene, computed_by, triangles, size, options, constant_bias, .. } = report;
+    let Names { format, method, filter, bias } = options;
     let _ = writeln!(text, "{computed_by}");
     let _ = writeln!(
         text,
-        "{scene}: {triangles} triangles, {size} x {size}, {format}, {method}, {filter}, bias {bias}"
+        "{scene}: {triangles} triangles, {size} x {size}, {format}, {method}, {filter}, {bias} bias {constant_bias}"
     );
     let _ = writeln!(
         text,
@@ -394,7 +406,8 @@ fn table(report: &Report) -> String {
     let s = &report.shadow;
     let _ = writeln!(
         text,
-        "\nshadow error at {} points, {} of them edge points, {} outside near or far\n  \
+        "\nshadow error at {} points, {} of them edge points, {} outside near or far, {} where the \
+         light has no map\n  \
          misclassified {} ({:.3}%): false shadow {}, false light {}\n  \
          faults (not at edges) {}: false shadow {}, false light {}; contact gap {:.4e}\n  \
          {} within 32 texels of the true edge: median {:.2}, largest {:.2} texels, {:.2e} rad\n  \
@@ -402,6 +415,7 @@ fn table(report: &Report) -> String {
         s.points,
         s.edge_points,
         s.outside_spheres,
+        s.unmapped,
         s.misclassified(),
         share(s.misclassified(), s.points),
         s.false_shadow,
@@ -433,17 +447,21 @@ fn table(report: &Report) -> String {
     }
     let _ = writeln!(
         text,
-        "\n{:<26}{:>10}{:>16}{:>11}{:>14}{:>11}",
-        "mesh", "triangles", "bow in texels", "predicted", "affine depth", "predicted"
+        "\n{:<26}{:>10}{:>9}{:>15}{:>11}{:>15}{:>12}",
+        "mesh", "triangles", "left out", "bow in texels", "predicted", "affine", "predicted"
     );
-    for MeshSources { mesh, triangles, bowed_edges, affine_depth } in &report.meshes {
+    for MeshSources { mesh, triangles, left_out, bowed_edges, affine_depth } in &report.meshes {
+        let percent = |share: f64| format!("{:.2}%", 100.0 * share);
+        let texels = |bow: f64| format!("{bow:.3}");
+        let or_none =
+            |value: Option<f64>, show: &dyn Fn(f64) -> String| value.map_or("-".to_string(), show);
         let _ = writeln!(
             text,
-            "{mesh:<26}{triangles:>10}{:>16.3}{:>11.3}{:>13.2}%{:>10.2}%",
-            bowed_edges.measured,
-            bowed_edges.predicted.unwrap_or(f64::NAN),
-            100.0 * affine_depth.measured,
-            100.0 * affine_depth.predicted.unwrap_or(f64::NAN)
+            "{mesh:<26}{triangles:>10}{left_out:>9}{:>15}{:>11}{:>15}{:>12}",
+            texels(bowed_edges.measured),
+            or_none(bowed_edges.predicted, &texels),
+            percent(affine_depth.measured),
+            or_none(affine_depth.predicted, &percent)
         );
     }
     text

@@ -6,6 +6,7 @@ mod measure;
 mod output;
 mod render;
 mod setup;
+mod table;
 mod text;
 
 pub use error::CliError;

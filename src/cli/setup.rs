@@ -7,6 +7,7 @@ use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Light, Options};
 use dpsm::{cpu, render};
 use glam::Vec3;
+use serde::Serialize;
 
 use super::{CliError, parse_vector};
 
@@ -97,7 +98,26 @@ enum BiasName {
     TexelCentre,
 }
 
+/// The options that say how, by their names on the command line.
+#[derive(Clone, Debug, Serialize)]
+pub struct Names {
+    pub format: String,
+    pub method: String,
+    pub filter: String,
+    pub bias: String,
+}
+
 impl SetupArguments {
+    /// The chosen options' names.
+    pub fn names(&self) -> Names {
+        Names {
+            format: name(self.format),
+            method: name(self.method),
+            filter: name(self.filter),
+            bias: name(self.bias),
+        }
+    }
+
     /// Opens the scene and makes the frame; warnings go to stderr.
     pub fn frame(
         &self,
@@ -156,8 +176,11 @@ impl SetupArguments {
 
 /// The error for a value that is named and not built.
 fn not_built(option: &'static str, value: impl ValueEnum, built: &'static str) -> CliError {
-    let value = value.to_possible_value().map_or(String::new(), |value| value.get_name().into());
-    CliError::NotBuilt { option, value, built }
+    CliError::NotBuilt { option, value: name(value), built }
+}
+
+fn name(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or(String::new(), |value| value.get_name().into())
 }
 
 /// A rendering by the adapter, or by the ports where there is none.

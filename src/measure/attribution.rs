@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, PenumbraError, Point};
-use crate::render::Format;
+use crate::render::{Format, Method};
 use crate::scalar::depth::dpsm_depth;
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::hemisphere::dpsm_flip;
@@ -202,16 +202,22 @@ pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     largest(triangles.into_par_iter().map(of_triangle), source(0.0, 0.0, String::new()))
 }
 
-/// Affine depth: how far the distance that is interpolated over a triangle's image is from that
-/// of the triangle there, as a share of it. Predicted: phi^2 / 8 (1 + sin^2 a) / cos^2 a for the
-/// triangle's angular size phi and the steepest incidence a at a corner (docs/measure.md).
+/// Affine interpolation: how far the distance that is stored over a triangle's image is from that
+/// of the triangle there, as a share of it; the interpolated distance for the vertex method, the
+/// distance of the interpolated position for the fragment-depth method. Predicted, for the former:
+/// phi^2 / 6 ((1 + sin^2 a) / cos^2 a + r tan a), for the triangle's angular size phi, and the
+/// steepest incidence a and largest r of its corners (docs/measure.md).
 ///
 /// Triangles with all corners in the stored disk of a hemisphere.
 pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
+    let method = bench.frame.settings.method;
     let source = |measured, predicted, place| Source {
-        name: "affine depth",
+        name: match method {
+            Method::Vertex => "affine depth",
+            Method::FragmentDepth => "affine position",
+        },
         measured,
-        predicted: Some(predicted),
+        predicted: (method == Method::Vertex).then_some(predicted),
         unit: "of the distance",
         place,
     };
@@ -220,28 +226,32 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
         let disk = corners.map(dpsm_project);
         let [a, b, c] = corners;
         let normal = cross(b - a, c - a);
-        let outside = disk.iter().any(|uv| uv.length() > 1.0 + bench.light.guard);
         let cosines = corners.map(|p| (normal.dot(p) / (normal.length() * p.length())).abs());
         let steepest = cosines.into_iter().fold(1.0, f64::min);
-        if outside || hemisphere >= bench.maps.layers || steepest.is_nan() || steepest == 0.0 {
+        let unseen = !is_inside(bench, corners, hemisphere) || steepest.is_nan() || steepest == 0.0;
+        if unseen {
             return source(0.0, 0.0, String::new());
         }
-        let lengths = corners.map(|corner| corner.length());
         let mut worst: f64 = 0.0;
         for i in 0..=STEPS {
             for j in 0..=STEPS - i {
                 let weights = [i, j, STEPS - i - j].map(|k| f64::from(k) / f64::from(STEPS));
                 // a point of the triangle, and the weights of its place in the straight image
                 let p = a * weights[0] + b * weights[1] + c * weights[2];
-                let Some(image) = image_weights(disk, dpsm_project(p)) else { continue };
-                let affine: f64 = image.iter().zip(lengths).map(|(k, l)| k * l).sum();
+                let Some([s, t, u]) = image_weights(disk, dpsm_project(p)) else { continue };
+                let affine = match method {
+                    Method::Vertex => s * a.length() + t * b.length() + u * c.length(),
+                    Method::FragmentDepth => (a * s + b * t + c * u).length(),
+                };
                 worst = worst.max((affine - p.length()).abs() / p.length());
             }
         }
         let angle = |p: Vec3<f64>, q: Vec3<f64>| cross(p, q).length().atan2(p.dot(q));
         let phi = angle(a, b).max(angle(b, c)).max(angle(c, a));
         let square = steepest * steepest;
-        let predicted = phi * phi / 8.0 * (2.0 - square) / square;
+        let tangent = ((1.0 - square) / square).sqrt();
+        let r = disk.map(|uv| uv.length()).into_iter().fold(0.0, f64::max);
+        let predicted = phi * phi / 6.0 * ((2.0 - square) / square + r * tangent);
         source(worst, predicted, place(bench, triangle))
     };
     let of_triangle = |triangle: u32| {
@@ -249,6 +259,25 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
         if back.measured > front.measured { back } else { front }
     };
     largest(triangles.into_par_iter().map(of_triangle), source(0.0, 0.0, String::new()))
+}
+
+/// Triangles that lie in no map's stored disk with all corners: they cross its border, or belong to
+/// the hemisphere that has no map. Bowed edges and affine depth leave them out.
+pub fn left_out(bench: &Bench<'_>, triangles: Range<u32>) -> usize {
+    let crosses = |triangle: &u32| {
+        (0..2).all(|hemisphere| {
+            let corners =
+                bench.corners(*triangle).map(|c| dpsm_flip(bench.to_light(c), hemisphere));
+            !is_inside(bench, corners, hemisphere)
+        })
+    };
+    triangles.into_par_iter().filter(crosses).count()
+}
+
+/// True where all corners of a triangle lie in a map's stored disk.
+fn is_inside(bench: &Bench<'_>, corners: [Vec3<f64>; 3], hemisphere: u32) -> bool {
+    let border = 1.0 + bench.light.guard;
+    hemisphere < bench.maps.layers && corners.iter().all(|p| dpsm_project(*p).length() <= border)
 }
 
 /// Barycentric weights of a place in a triangle on the disk; `None` outside it.

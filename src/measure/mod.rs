@@ -7,7 +7,7 @@ mod attribution;
 mod map;
 mod shadow;
 
-pub use attribution::{Source, affine_depth, attribute, bowed_edges};
+pub use attribution::{Source, affine_depth, attribute, bowed_edges, left_out};
 pub use map::{Band, MapError, map_error};
 pub use shadow::{
     Judgement, PenumbraError, ShadowError, coverage, judge, penumbra_error, shadow_error,

@@ -80,7 +80,7 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
     }
 }
 
-/// True where the rays over the texels that a lookup reads do not all agree.
+/// True where the rays over the texels that a lookup reads do not all agree, or miss the plane.
 fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) -> bool {
     let reach = match bench.maps.sampling {
         crate::scalar::maps::Sampling::Nearest => 0.0,
@@ -95,7 +95,7 @@ fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) 
             st / bench.light.size,
             bench.light.guard,
         );
-        bench.reaches(point, uv, hemisphere).is_some_and(|reaches| reaches != sees)
+        bench.reaches(point, uv, hemisphere).is_none_or(|reaches| reaches != sees)
     })
 }
 
@@ -140,6 +140,9 @@ pub struct ShadowError {
     pub points: usize,
     /// Points inside the near or beyond the far sphere: compared at the sphere.
     pub outside_spheres: usize,
+    /// Points in the hemisphere that a hemispherical light has no map for: dark by definition, in
+    /// the map as in truth.
+    pub unmapped: usize,
     /// Edge points.
     pub edge_points: usize,
     /// Lit points that the map shadows.
@@ -202,6 +205,7 @@ pub fn shadow_error(
         let r = judgement.uv[0].hypot(judgement.uv[1]);
         let seam = r >= 1.0 - SEAM_TEXELS * bench.texel();
         error.seam_points += usize::from(seam);
+        error.unmapped += usize::from(judgement.hemisphere >= bench.frame.light.hemispheres);
         error.edge_points += usize::from(judgement.edge);
         error.outside_spheres += usize::from(!(near..=far).contains(&judgement.own));
         if (judgement.visibility >= 0.5) == judgement.lit {
@@ -216,7 +220,10 @@ pub fn shadow_error(
             false => {
                 error.false_light += 1;
                 error.faults_light += usize::from(!judgement.edge);
-                let by_bias = judgement.stored < judgement.own;
+                // the texel holds the occluder, not the receiver that lies behind it
+                let occluder = judgement.own - judgement.gap;
+                let by_bias =
+                    (judgement.stored - occluder).abs() < judgement.own - judgement.stored;
                 if !judgement.edge && by_bias && judgement.gap.is_finite() {
                     error.contact_gap = error.contact_gap.max(judgement.gap);
                 }

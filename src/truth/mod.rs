@@ -123,9 +123,12 @@ impl Truth {
             let [a, b, c] = self.corners[hit.triangle as usize];
             let normal = (b - a).cross(c - a);
             let inside = weighted([a, b, c], hit.weights);
-            let largest = [light, point, a, b, c].map(|v| v.abs().max_element());
-            let touch = TOUCH * largest.into_iter().fold(0.0, f64::max) * normal.length();
-            [light, point].iter().all(|end| normal.dot(end - inside).abs() > touch)
+            // the point's coordinates play no part at the light's end
+            [light, point].iter().all(|end| {
+                let largest = [*end, light, a, b, c].map(|v| v.abs().max_element());
+                let touch = TOUCH * largest.into_iter().fold(0.0, f64::max) * normal.length();
+                normal.dot(end - inside).abs() > touch
+            })
         })
     }
 
