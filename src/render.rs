@@ -1,5 +1,9 @@
 //! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
 
+mod error;
+
+pub use error::FrameError;
+
 use std::ops::Range;
 use std::time::Duration;
 
@@ -181,72 +185,6 @@ pub struct Rendering {
     pub views: Vec<Picture>,
     /// Each pass and its time.
     pub timings: Vec<(String, Duration)>,
-}
-
-/// Bad settings.
-#[derive(Debug, thiserror::Error, PartialEq)]
-pub enum FrameError {
-    /// A coordinate that is not a usable number.
-    #[error(
-        "{what} {value} is outside float range; each coordinate must be a number between -{LARGEST:e} and {LARGEST:e}"
-    )]
-    Range {
-        /// Which coordinate.
-        what: &'static str,
-        /// The value.
-        value: Vec3,
-    },
-    /// The clipping spheres enclose nothing.
-    #[error(
-        "near {near} and far {far} must fit {SMALLEST:e} <= near < far <= {LARGEST:e}; set --near and --far, or move the light off the geometry"
-    )]
-    Spheres {
-        /// Near sphere's radius.
-        near: f32,
-        /// Far sphere's radius.
-        far: f32,
-    },
-    /// A bias that leaves no depth.
-    #[error("bias {0} must be at least 0 and below 0.5, in units of depth")]
-    Bias(f32),
-    /// An image or map size of 0 or too large.
-    #[error("{what} {asked} must be from 1 to {limit}")]
-    Size {
-        /// Which size.
-        what: &'static str,
-        /// The value.
-        asked: u32,
-        /// The largest allowed.
-        limit: u32,
-    },
-    /// More memory than there is.
-    #[error(
-        "{what} needs {bytes} bytes of memory at once, more than there are; choose a smaller one"
-    )]
-    Memory {
-        /// The option.
-        what: &'static str,
-        /// Bytes needed.
-        bytes: u64,
-    },
-    /// A scene's vertex that is too far out.
-    #[error(
-        "mesh `{mesh}`: vertex {index} at {value} is outside float range, -{LARGEST:e} to {LARGEST:e}; scale the scene down"
-    )]
-    Vertex {
-        /// The mesh.
-        mesh: String,
-        /// Index in the mesh.
-        index: usize,
-        /// The vertex.
-        value: Vec3,
-    },
-    /// The light's main axis points nowhere.
-    #[error("the light's axis {0} has no direction; set --axis to a vector other than 0,0,0")]
-    Axis(Vec3),
-    /// The camera looks nowhere.
-    #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
-    Camera(Vec3),
 }
 
 /// Largest coordinate: squares of sums of three stay finite in f32.

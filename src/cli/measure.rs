@@ -1,67 +1,18 @@
-//! The commands that compare with ray casting: bake, probe, measure.
+//! `dpsm measure`: a scene's shadows against ray casting.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dpsm::gpu::Device;
-use dpsm::measure::{self, Bench, Judgement, MapError, PenumbraError, Point, ShadowError, Source};
-use dpsm::render::{Frame, LARGEST, Lookup};
-use dpsm::scalar::depth::dpsm_distance;
+use dpsm::measure::{self, Bench, MapError, PenumbraError, Point, ShadowError, Source};
+use dpsm::render::{Frame, Lookup};
 use dpsm::scalar::maps::DepthMaps;
-use glam::DVec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::output::{Outputs, print, write_or_print};
+use super::output::print;
 use super::setup::{Names, SetupArguments, make_maps};
-use super::table::Table;
 use super::{AdapterChoice, CliError, describe};
-
-/// Make the maps and write them as EXR, distances in world units
-#[derive(Debug, Args)]
-#[command(after_help = "\
-One layer a hemisphere (`front`, `back`) with the channel `distance`: f32, world units, infinite
-where nothing was hit. MAPS.json beside it holds the light's parameters. Nothing is
-chosen at random.
-
-Example:
-  dpsm bake brabec-room --light=-1,2,0.5 --size 512 -o maps.exr")]
-pub struct BakeArguments {
-    #[command(flatten)]
-    setup: SetupArguments,
-    /// The .exr file to write
-    #[arg(short, long)]
-    output: PathBuf,
-    /// Print what was written as JSON
-    #[arg(long)]
-    json: bool,
-}
-
-/// Judge points given in a CSV file: by the maps, and by ray casting
-#[derive(Debug, Args)]
-#[command(after_help = "\
-The input's header is x,y,z or x,y,z,nx,ny,nz: world units, unit normals. One line of output for
-each line of input, in its order, with the header
-visibility,hemisphere,u,v,stored,own,truth,edge: u and v are disk coordinates in the hemisphere's
-map, stored and own distances from the light, truth 1 where ray casting sees the light, edge 1
-where the rays over the texel's footprint do not all agree. Nothing is chosen at random.
-
-Example:
-  dpsm probe brabec-room --points points.csv --size 512 -o judged.csv")]
-pub struct ProbeArguments {
-    #[command(flatten)]
-    setup: SetupArguments,
-    /// The points
-    #[arg(long)]
-    points: PathBuf,
-    /// Write here instead of standard output
-    #[arg(short, long)]
-    output: Option<PathBuf>,
-    /// JSON in place of CSV
-    #[arg(long)]
-    json: bool,
-}
 
 /// Measure a scene's shadows against ray casting
 #[derive(Debug, Args)]
@@ -91,7 +42,8 @@ pub struct MeasureArguments {
 /// Width and height of the image whose camera chooses points.
 const IMAGE: [u32; 2] = [960, 720];
 
-fn prepare(
+/// The scene's frame, its maps, and the adapter that made them.
+pub fn prepare(
     adapter: AdapterChoice,
     setup: &SetupArguments,
 ) -> Result<(String, Frame, DepthMaps, Option<Device>), CliError> {
@@ -105,194 +57,10 @@ fn prepare(
 }
 
 /// A bar on stderr, where that is a terminal.
-fn bar(what: &'static str, steps: usize) -> ProgressBar {
+pub fn bar(what: &'static str, steps: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:>14} [{bar:40}] {pos}/{len} {eta}");
     let bar = ProgressBar::new(steps as u64).with_message(what);
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-}
-
-/// `dpsm bake`.
-pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), CliError> {
-    let (scene, frame, maps, device) = prepare(adapter, &arguments.setup)?;
-    let path = &arguments.output;
-    let beside = path.with_extension("json");
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
-        return Err(CliError::Usage(format!(
-            "maps are EXR: name {} something.exr",
-            path.display()
-        )));
-    }
-    let light = frame.light;
-    let vector = |v: dpsm::scalar::float::Vec3<f32>| [v.x, v.y, v.z];
-    let names = arguments.setup.names();
-    let parameters = serde_json::json!({
-        "scene": scene,
-        "position": vector(light.position),
-        "right": vector(light.right),
-        "up": vector(light.up),
-        "forward": vector(light.forward),
-        "near": light.near,
-        "far": light.far,
-        "guard": light.guard,
-        "size": maps.size,
-        "hemispheres": light.hemispheres,
-        "format": names.format,
-        "method": names.method,
-        "filter": names.filter,
-        "bias": names.bias,
-        "constant_bias": frame.bias,
-        "computed_by": describe(device.as_ref()),
-    });
-    let mut outputs = Outputs::for_option("-o");
-    outputs.add(path, &exr_bytes(path, &frame, &maps)?)?;
-    outputs.add(&beside, pretty(&parameters)?.as_bytes())?;
-    let written = outputs.finish()?;
-    if arguments.json {
-        return print(&pretty(&serde_json::json!({ "written": written, "light": parameters }))?);
-    }
-    let mut text =
-        format!("{}\n{scene}: {} triangles\n", describe(device.as_ref()), frame.triangles.len());
-    for path in written {
-        let _ = writeln!(text, "  {}", path.display());
-    }
-    print(&text)
-}
-
-/// The maps as an EXR file, one layer a hemisphere.
-fn exr_bytes(path: &Path, frame: &Frame, maps: &DepthMaps) -> Result<Vec<u8>, CliError> {
-    use exr::prelude::*;
-    let distance = |&depth: &f32| match depth < 1.0 {
-        true => dpsm_distance(depth, frame.light.near, frame.light.far),
-        false => f32::INFINITY,
-    };
-    let size = maps.size as usize;
-    let layer = |(index, name): (u32, &str)| {
-        let samples = maps.layer(index).iter().map(distance).collect();
-        let channel = AnyChannel::new("distance", FlatSamples::F32(samples));
-        let attributes = LayerAttributes::named(name);
-        Layer::new(
-            (size, size),
-            attributes,
-            Encoding::SMALL_LOSSLESS,
-            AnyChannels::sort(std::iter::once(channel).collect()),
-        )
-    };
-    let layers: Vec<_> = (0..maps.layers).zip(["front", "back"]).map(layer).collect();
-    let bounds = IntegerBounds::from_dimensions((size, size));
-    let image = Image::from_layers(ImageAttributes::new(bounds), layers);
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image
-        .write()
-        .to_buffered(&mut bytes)
-        .map_err(|error| CliError::Exr { path: path.into(), message: error.to_string() })?;
-    Ok(bytes.into_inner())
-}
-
-/// `dpsm probe`.
-pub fn probe(adapter: AdapterChoice, arguments: &ProbeArguments) -> Result<(), CliError> {
-    let given = read_points(&arguments.points)?;
-    let (_, frame, maps, device) = prepare(adapter, &arguments.setup)?;
-    eprintln!("dpsm: {}", describe(device.as_ref()));
-    let truth = measure::truth_of(&frame);
-    let bench = Bench::new(&frame, &maps, &truth);
-    let progress = bar("points", given.len());
-    let judge = |&(position, normal): &(DVec3, Option<DVec3>)| {
-        progress.inc(1);
-        measure::judge(&bench, &bench.point_at(position, normal))
-    };
-    let judged: Vec<Judgement> = given.iter().map(judge).collect();
-    progress.finish_and_clear();
-    let (near, far) = (bench.light.near, bench.light.far);
-    let outside = judged.iter().filter(|j| !(near..=far).contains(&j.own)).count();
-    if outside > 0 {
-        eprintln!(
-            "dpsm: {outside} points lie inside near {near} or beyond far {far}: compared at the sphere"
-        );
-    }
-    let text = match arguments.json {
-        true => pretty(&judged.iter().map(row).collect::<Vec<_>>())?,
-        false => {
-            let mut text = String::from("visibility,hemisphere,u,v,stored,own,truth,edge\n");
-            for judgement in &judged {
-                let Row { visibility, hemisphere, u, v, stored, own, truth, edge } = row(judgement);
-                let stored = stored.unwrap_or(f64::INFINITY);
-                let _ = writeln!(
-                    text,
-                    "{visibility},{hemisphere},{u},{v},{stored},{own},{truth},{edge}"
-                );
-            }
-            text
-        }
-    };
-    write_or_print(arguments.output.as_deref(), &text)
-}
-
-/// One line of `dpsm probe`.
-#[derive(Serialize)]
-struct Row {
-    visibility: f32,
-    hemisphere: u32,
-    u: f64,
-    v: f64,
-    /// `None` (null) where the texel is empty: JSON has no infinity.
-    stored: Option<f64>,
-    own: f64,
-    truth: u8,
-    edge: u8,
-}
-
-fn row(judgement: &Judgement) -> Row {
-    Row {
-        visibility: judgement.visibility,
-        hemisphere: judgement.hemisphere,
-        u: judgement.uv[0],
-        v: judgement.uv[1],
-        stored: judgement.stored.is_finite().then_some(judgement.stored),
-        own: judgement.own,
-        truth: judgement.lit.into(),
-        edge: judgement.edge.into(),
-    }
-}
-
-/// Positions, with normals where the header has them.
-fn read_points(path: &Path) -> Result<Vec<(DVec3, Option<DVec3>)>, CliError> {
-    let table = Table::read(path)?;
-    let fault = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
-    let names = ["x", "y", "z", "nx", "ny", "nz"];
-    let header: Vec<&str> = table.header.iter().map(String::as_str).collect();
-    if header != names[..3] && header != names {
-        let found = header.join(",");
-        let message = format!("the header is `{found}`, and must be x,y,z or x,y,z,nx,ny,nz");
-        return Err(fault(1, message));
-    }
-    let mut points = Vec::new();
-    for (line, record) in table.records {
-        let mut numbers = [0.0; 6];
-        for ((field, name), number) in record.iter().zip(names).zip(&mut numbers) {
-            // as for the light: beyond it squares of distances overflow f32
-            let usable = |value: &f64| value.abs() <= f64::from(LARGEST);
-            let parsed: Option<f64> = field.parse().ok().filter(usable);
-            *number = parsed.ok_or_else(|| {
-                let range = "is not a finite number up to 1e18";
-                fault(line, format!("column `{name}`: `{field}` {range}"))
-            })?;
-        }
-        let [x, y, z, nx, ny, nz] = numbers;
-        let normal = match header.len() {
-            6 => {
-                let normal = DVec3::new(nx, ny, nz);
-                if (normal.length() - 1.0).abs() > 1e-3 {
-                    let message =
-                        format!("columns `nx,ny,nz`: the normal {normal} is not a unit one");
-                    return Err(fault(line, message));
-                }
-                Some(normal.normalize())
-            }
-            _ => None,
-        };
-        points.push((DVec3::new(x, y, z), normal));
-    }
-    Ok(points)
 }
 
 /// Everything that `dpsm measure` finds.
@@ -467,7 +235,8 @@ fn table(report: &Report) -> String {
     text
 }
 
-fn pretty(value: &impl Serialize) -> Result<String, CliError> {
+/// A value as JSON.
+pub fn pretty(value: &impl Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string_pretty(value);
     text.map(|text| text + "\n").map_err(|error| CliError::Usage(format!("no JSON: {error}")))
 }

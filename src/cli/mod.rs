@@ -1,9 +1,11 @@
 //! Arguments, and the choice of the command.
 
+mod bake;
 mod error;
 mod eval;
 mod measure;
 mod output;
+mod probe;
 mod render;
 mod setup;
 mod table;
@@ -66,8 +68,8 @@ enum Command {
     Link(text::LinkArguments),
     Validate(text::ValidateArguments),
     Eval(eval::EvalArguments),
-    Bake(measure::BakeArguments),
-    Probe(measure::ProbeArguments),
+    Bake(bake::BakeArguments),
+    Probe(probe::ProbeArguments),
     Measure(measure::MeasureArguments),
 }
 
@@ -81,8 +83,8 @@ pub fn run(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Link(link)) => text::link(&link),
         Some(Command::Validate(validate)) => text::validate(&validate),
         Some(Command::Eval(eval)) => eval::eval(adapter, &eval),
-        Some(Command::Bake(bake)) => measure::bake(adapter, &bake),
-        Some(Command::Probe(probe)) => measure::probe(adapter, &probe),
+        Some(Command::Bake(bake)) => bake::bake(adapter, &bake),
+        Some(Command::Probe(probe)) => probe::probe(adapter, &probe),
         Some(Command::Measure(measure)) => measure::measure(adapter, &measure),
     }
 }

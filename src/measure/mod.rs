@@ -5,13 +5,13 @@
 
 mod attribution;
 mod map;
+mod penumbra;
 mod shadow;
 
 pub use attribution::{Source, affine_depth, attribute, bowed_edges, left_out};
 pub use map::{Band, MapError, map_error};
-pub use shadow::{
-    Judgement, PenumbraError, ShadowError, coverage, judge, penumbra_error, shadow_error,
-};
+pub use penumbra::{PenumbraError, coverage, penumbra_error};
+pub use shadow::{Judgement, ShadowError, judge, shadow_error};
 
 use fastrand::Rng;
 use glam::{DMat3, DVec3};

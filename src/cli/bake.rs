@@ -1,0 +1,111 @@
+//! `dpsm bake`: the maps as distances, for anyone to check.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dpsm::render::Frame;
+use dpsm::scalar::depth::dpsm_distance;
+use dpsm::scalar::maps::DepthMaps;
+
+use super::measure::{prepare, pretty};
+use super::output::{Outputs, print};
+use super::setup::SetupArguments;
+use super::{AdapterChoice, CliError, describe};
+
+/// Make the maps and write them as EXR, distances in world units
+#[derive(Debug, Args)]
+#[command(after_help = "\
+One layer a hemisphere (`front`, `back`) with the channel `distance`: f32, world units, infinite
+where nothing was hit. MAPS.json beside it holds the light's parameters. Nothing is
+chosen at random.
+
+Example:
+  dpsm bake brabec-room --light=-1,2,0.5 --size 512 -o maps.exr")]
+pub struct BakeArguments {
+    #[command(flatten)]
+    setup: SetupArguments,
+    /// The .exr file to write
+    #[arg(short, long)]
+    output: PathBuf,
+    /// Print what was written as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// `dpsm bake`.
+pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), CliError> {
+    let (scene, frame, maps, device) = prepare(adapter, &arguments.setup)?;
+    let path = &arguments.output;
+    let beside = path.with_extension("json");
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
+        return Err(CliError::Usage(format!(
+            "maps are EXR: name {} something.exr",
+            path.display()
+        )));
+    }
+    let light = frame.light;
+    let vector = |v: dpsm::scalar::float::Vec3<f32>| [v.x, v.y, v.z];
+    let names = arguments.setup.names();
+    let parameters = serde_json::json!({
+        "scene": scene,
+        "position": vector(light.position),
+        "right": vector(light.right),
+        "up": vector(light.up),
+        "forward": vector(light.forward),
+        "near": light.near,
+        "far": light.far,
+        "guard": light.guard,
+        "size": maps.size,
+        "hemispheres": light.hemispheres,
+        "format": names.format,
+        "method": names.method,
+        "filter": names.filter,
+        "bias": names.bias,
+        "constant_bias": frame.bias,
+        "computed_by": describe(device.as_ref()),
+    });
+    let mut outputs = Outputs::for_option("-o");
+    outputs.add(path, &exr_bytes(path, &frame, &maps)?)?;
+    outputs.add(&beside, pretty(&parameters)?.as_bytes())?;
+    let written = outputs.finish()?;
+    if arguments.json {
+        return print(&pretty(&serde_json::json!({ "written": written, "light": parameters }))?);
+    }
+    let mut text =
+        format!("{}\n{scene}: {} triangles\n", describe(device.as_ref()), frame.triangles.len());
+    for path in written {
+        let _ = writeln!(text, "  {}", path.display());
+    }
+    print(&text)
+}
+
+/// The maps as an EXR file, one layer a hemisphere.
+fn exr_bytes(path: &Path, frame: &Frame, maps: &DepthMaps) -> Result<Vec<u8>, CliError> {
+    use exr::prelude::*;
+    let distance = |&depth: &f32| match depth < 1.0 {
+        true => dpsm_distance(depth, frame.light.near, frame.light.far),
+        false => f32::INFINITY,
+    };
+    let size = maps.size as usize;
+    let layer = |(index, name): (u32, &str)| {
+        let samples = maps.layer(index).iter().map(distance).collect();
+        let channel = AnyChannel::new("distance", FlatSamples::F32(samples));
+        let attributes = LayerAttributes::named(name);
+        Layer::new(
+            (size, size),
+            attributes,
+            Encoding::SMALL_LOSSLESS,
+            AnyChannels::sort(std::iter::once(channel).collect()),
+        )
+    };
+    let layers: Vec<_> = (0..maps.layers).zip(["front", "back"]).map(layer).collect();
+    let bounds = IntegerBounds::from_dimensions((size, size));
+    let image = Image::from_layers(ImageAttributes::new(bounds), layers);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(|error| CliError::Exr { path: path.into(), message: error.to_string() })?;
+    Ok(bytes.into_inner())
+}
