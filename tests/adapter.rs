@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{light, point, rng, spread, unit};
+use common::{device, light, point, rng, spread, unit};
 use dpsm::gpu::{Device, Evaluator, GpuError, Resources, Texels, comparison_sampler};
 use dpsm::reflect::{Kind, Signature};
 use dpsm::render::Format;
@@ -19,21 +19,6 @@ use fastrand::Rng;
 
 /// Inputs of each function.
 const INPUTS: usize = 1 << 20;
-
-/// The adapter, or `None` with a printed line; an error where one is required.
-fn device() -> Option<Device> {
-    match Device::open() {
-        Ok(device) => {
-            println!("adapter: {}", device.describe());
-            Some(device)
-        }
-        Err(error) if std::env::var_os("DPSM_REQUIRE_ADAPTER").is_none() => {
-            println!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// A driver that neither fuses, flushes nor reorders.
 fn rounds_to_nearest(device: &Device) -> bool {

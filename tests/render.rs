@@ -3,6 +3,9 @@
 
 #![cfg(feature = "cli")]
 
+mod common;
+
+use common::device;
 use dpsm::cpu::{self, SurfacePoint};
 use dpsm::gpu::{self, Device};
 use dpsm::render::{Format, Frame, Lookup, Method, Picture, Rendering, Settings};
@@ -23,17 +26,6 @@ fn frame(name: &str, settings: Settings) -> Frame {
 
 fn settings() -> Settings {
     Settings { size: 256, image: [SIDE, SIDE], views: true, ..Settings::default() }
-}
-
-fn device() -> Option<Device> {
-    match Device::open() {
-        Ok(device) => Some(device),
-        Err(error) if std::env::var_os("DPSM_REQUIRE_ADAPTER").is_none() => {
-            println!("skipped: {error}");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
 }
 
 fn levels_apart(a: [u8; 4], b: [u8; 4]) -> u8 {

@@ -99,3 +99,19 @@ impl Worst {
         assert!(self.ratio <= 1.0, "{name}: {:.3} of the bound at {}", self.ratio, self.input);
     }
 }
+
+/// The adapter, or `None` with a printed line; an error where one is required.
+#[cfg(feature = "gpu")]
+pub fn device() -> Option<dpsm::gpu::Device> {
+    match dpsm::gpu::Device::open() {
+        Ok(device) => {
+            println!("adapter: {}", device.describe());
+            Some(device)
+        }
+        Err(error) if std::env::var_os("DPSM_REQUIRE_ADAPTER").is_none() => {
+            println!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
