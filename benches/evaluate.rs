@@ -67,7 +67,7 @@ fn throughput(device: &Device, evaluator: &Evaluator<'_>) -> Result<(), GpuError
     let evaluate = |encoder: &mut wgpu::CommandEncoder, stamps: dpsm::gpu::Stamps<'_>| {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
-            timestamp_writes: dpsm::gpu::compute_writes(stamps),
+            timestamp_writes: dpsm::gpu::compute_writes(stamps, dpsm::gpu::ALONE),
         });
         evaluator.record(&mut pass, &input, &output, records, None);
     };
@@ -132,7 +132,7 @@ impl Copy {
     fn record(&self, encoder: &mut wgpu::CommandEncoder, stamps: dpsm::gpu::Stamps<'_>) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: None,
-            timestamp_writes: dpsm::gpu::compute_writes(stamps),
+            timestamp_writes: dpsm::gpu::compute_writes(stamps, dpsm::gpu::ALONE),
         });
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);

@@ -79,14 +79,23 @@ const DPSM_SMALLEST: f32 = 0x1p-51;
 /// For z >= 0 this is r <= 1; for z < 0, r > 1, which is computed in the point's own hemisphere
 /// and carried across the seam, so that nothing cancels. For the back map flip the point first.
 /// Domain: largest |component| in [2^-51, 2^63]. Bound: 9.5 eps relative for z >= 0, 19 eps for
-/// z < 0, results below 2^-103 counted as 2^-103. Directions within 2^-24 rad of the -z pole give (DPSM_POLE_RADIUS, 0); the light's own
-/// position gives (0, 0); smaller points give a finite result.
+/// z < 0, results below 2^-103 counted as 2^-103. Directions within 2^-24 rad of the -z pole give
+/// (DPSM_POLE_RADIUS, 0); the light's own position gives (0, 0); smaller points give a finite
+/// result.
 fn dpsm_project(p: vec3<f32>) -> vec2<f32> {
-    let own = p.xy / max(length(p) + abs(p.z), DPSM_SMALLEST);
+    let own = dpsm_project_own(p);
     if p.z >= 0.0 {
         return own;
     }
     return dpsm_invert(own);
+}
+
+/// Projects a light-space point to its own hemisphere's disk coordinates, r <= 1; the same bits
+/// for a point and its flip.
+///
+/// Domain: as for dpsm_project. Bound: 9.5 eps relative, results below 2^-103 counted as 2^-103.
+fn dpsm_project_own(p: vec3<f32>) -> vec2<f32> {
+    return p.xy / max(length(p) + abs(p.z), DPSM_SMALLEST);
 }
 
 // dpsm::caster

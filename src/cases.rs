@@ -1,6 +1,8 @@
 //! Named hard cases: inputs at which a function is most likely to go wrong. Tests and `dpsm eval`
 //! share them.
 
+mod exact;
+
 use crate::scalar::float::{Vec2, Vec3, Vec4};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_POLE_RADIUS};
 use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
@@ -84,11 +86,14 @@ pub fn of(function: &str) -> Vec<Case> {
     let mut cases = Cases::default();
     match function {
         "dpsm_to_light" => cases.each(POINTS, |p| (layers.position + point(p), layers)),
-        "dpsm_hemisphere" | "dpsm_project" => cases.each(POINTS, point),
+        "dpsm_hemisphere" | "dpsm_project" | "dpsm_project_own" => cases.each(POINTS, point),
         "dpsm_flip" => cases.each(POINTS, |p| (point(p), DPSM_BACK)),
         "dpsm_invert" | "dpsm_unproject" => cases.each(DISKS, disk),
         "dpsm_texel_pitch" | "dpsm_texel_solid_angle" => {
             cases.each(DISKS, |uv| (disk(uv), 512.0, GUARD));
+        }
+        "dpsm_texel_width" => {
+            cases.each(&[("smallest", 1.0), ("512", 512.0)], |size| (size, GUARD));
         }
         "dpsm_disk_to_texture" | "dpsm_texture_to_disk" => {
             cases.each(DISKS, |uv| (disk(uv), GUARD));
@@ -120,19 +125,111 @@ pub fn of(function: &str) -> Vec<Case> {
                 cases.each(&both(name), |light| (point(*p), light));
             }
         }
+        "dpsm_tessellate_weights" => {
+            cases.each(SUB_VERTICES, |[level, index]| (level, index));
+        }
+        "dpsm_tessellate_point" => {
+            let [a, b, c] = [[0.1, -2.0, 3e3], [0.3, 7.0, -1e-3], [-5.0, 0.7, 1e-9]].map(point);
+            cases.each(WEIGHTS, |weights| (a, b, c, weights));
+        }
+        "dpsm_tessellate_level" => {
+            cases.each(EDGES, |[edge, distance, tau]| (edge, distance, layers, tau, 64));
+        }
+        "dpsm_cube_face" => {
+            cases.each(POINTS, point);
+            cases.each(TIES, point);
+        }
+        "dpsm_cube_view" | "dpsm_cube_unview" => {
+            cases.each(FACES, |face| (Vec3::new(1.0, 2.0, 3.0), face));
+        }
+        "dpsm_cube_guard" => {
+            cases.each(&[("smallest", 1.0), ("widest", 4.0), ("512", 512.0)], |size| size);
+        }
+        "dpsm_cube_vertex" => {
+            cases.each(FACES, |face| (Vec3::new(1.0, 2.0, 3.0), face, layers));
+            cases.each(POINTS, |p| (point(p), 5, layers));
+        }
+        "dpsm_cube_depth" => cases.each(DISTANCES, |[l, near, far]| (l, near, far)),
+        "dpsm_cube_receiver_depth" => cases.each(POINTS, |p| (point(p), 5, layers, 0.01)),
+        "dpsm_cube_lookup" => {
+            cases.each(POINTS, |p| (point(p), layers));
+            cases.each(TIES, |p| (point(p), layers));
+        }
+        "dpsm_cube_direction" => cases.each(FACES, |face| (Vec2::new(0.25, 1.0), face, GUARD)),
+        "dpsm_cube_distance" => {
+            let depths = [("near", 0.0), ("far", 1.0), ("between", 0.3), ("just off far", 0.9999)];
+            cases.each(&depths, |depth| (depth, Vec3::new(1.0, 0.5, -0.25), 0.1, 10.0));
+        }
+        "dpsm_cube_outside" => {
+            cases.each(TRIANGLES, |[a, b, c]| (point(a), point(b), point(c), 4, GUARD))
+        }
         "dpsm_shade" => cases.each(VISIBILITIES, |visibility| (unit, unit, unit, visibility)),
         "dpsm_blend" => {
             cases.each(VISIBILITIES, |visibility| (unit, Vec3::splat(0.1), visibility));
         }
         "dpsm_lambert" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light))),
         "dpsm_highlight" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light), unit)),
-        _ => {}
+        _ => exact::add(function, &mut cases),
     }
     cases.0
 }
 
 /// Width of the guard band in the cases.
 const GUARD: f32 = 1.0 / 64.0;
+
+/// Points that lie on two or three faces of a cube, or beside an edge.
+const TIES: &[(&str, [f32; 3])] = &[
+    ("corner of three faces", [1.0, 1.0, 1.0]),
+    ("opposite corner", [-1.0, -1.0, -1.0]),
+    ("edge of x and y", [1.0, -1.0, 0.5]),
+    ("edge of x and z", [-1.0, 0.25, 1.0]),
+    ("one float off an edge", [1.000_000_1, 1.0, 0.0]),
+];
+
+/// Faces of a cube, and one beyond.
+const FACES: &[(&str, u32)] =
+    &[("+x", 0), ("-x", 1), ("+y", 2), ("-y", 3), ("+z", 4), ("-z", 5), ("no face", 6)];
+
+/// Triangles before the face +z.
+const TRIANGLES: &[(&str, [[f32; 3]; 3])] = &[
+    ("in the middle", [[0.0, 0.0, 1.0], [0.1, 0.0, 1.0], [0.0, 0.1, 1.0]]),
+    ("larger than the face", [[-9.0, -9.0, 1.0], [9.0, -9.0, 1.0], [0.0, 9.0, 1.0]]),
+    ("touches the widened edge", [[1.015_625, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]]),
+    ("beyond the right side", [[1.016, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]]),
+    ("behind", [[0.0, 0.0, -1.0], [0.1, 0.0, -1.0], [0.0, 0.1, -0.0]]),
+    ("around the light", [[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [0.0, 1.0, 1.0]]),
+];
+
+/// Level and index of a sub-triangle's vertex.
+const SUB_VERTICES: &[(&str, [u32; 2])] = &[
+    ("whole triangle, b", [1, 1]),
+    ("first down triangle of 2 x 2, its first", [2, 9]),
+    ("last vertex of 3 x 3", [3, 26]),
+    ("one too many", [3, 27]),
+    ("level 0", [0, 2]),
+    ("largest level, last vertex", [1 << 15, 3_221_225_471]),
+    ("largest index", [7, u32::MAX]),
+];
+
+/// Barycentric numerators.
+const WEIGHTS: &[(&str, [u32; 3])] = &[
+    ("corner", [0, 5, 0]),
+    ("on an edge", [0, 2, 3]),
+    ("middle of an edge", [2, 0, 2]),
+    ("centre", [1, 1, 1]),
+    ("inside", [1, 3, 2]),
+    ("nothing", [0, 0, 0]),
+];
+
+/// Longest edge, nearest distance and tolerance.
+const EDGES: &[(&str, [f32; 3])] = &[
+    ("wall", [4.0, 2.0, 0.5]),
+    ("flat enough", [0.01, 2.0, 0.5]),
+    ("light on the triangle", [4.0, 0.0, 0.5]),
+    ("no tolerance", [0.001, 2.0, 0.0]),
+    ("huge tolerance", [4.0, 2.0, 1e9]),
+    ("no edge", [0.0, 2.0, 0.5]),
+];
 
 /// Shares of the light that arrive.
 const VISIBILITIES: &[(&str, f32)] = &[("lit", 1.0), ("in shadow", 0.0), ("half", 0.5)];

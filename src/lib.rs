@@ -61,7 +61,10 @@ macro_rules! modules {
         }),+];
     };
 }
-modules! { "light" "hemisphere" "paraboloid" "depth" "caster" "visibility" "shade" }
+modules! {
+    "light" "hemisphere" "paraboloid" "depth" "caster" "tessellate" "edge" "triangle" "classify"
+    "visibility" "cube" "shade"
+}
 
 /// The module of that name.
 pub fn module(name: &str) -> Option<&'static Module> {

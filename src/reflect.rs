@@ -164,6 +164,11 @@ fn shape(module: &Module, ty: naga::Handle<naga::Type>) -> Result<Shape, String>
             }
             _ => return Err(format!("the texture type {}", name())),
         },
+        TypeInner::Image {
+            dim: naga::ImageDimension::Cube,
+            arrayed: false,
+            class: naga::ImageClass::Depth { multi: false },
+        } => Shape::Texture("texture_depth_cube".into()),
         TypeInner::Sampler { comparison: true } => Shape::Sampler("sampler_comparison".into()),
         TypeInner::Sampler { comparison: false } => Shape::Sampler("sampler".into()),
         _ => return Err(format!("the type {}", name())),

@@ -1,18 +1,25 @@
 //! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
 
 mod error;
+mod extent;
+mod meshes;
+mod projection;
 
 pub use error::FrameError;
+pub use extent::Extent;
+pub use projection::{Projection, texel};
 
 use std::ops::Range;
 use std::time::Duration;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
+use crate::scalar::cube::{DPSM_CUBE_FACES, dpsm_cube_guard};
 use crate::scalar::float as scalar;
 use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
 use crate::scalar::maps::{DepthMaps, Sampling};
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Mask, Scene};
+use meshes::Meshes;
 
 /// Storage of a depth map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +60,32 @@ pub enum Method {
     Vertex,
     /// The blog: radial depth of each fragment's interpolated position.
     FragmentDepth,
+    /// Osman 2006: `Vertex` on subdivided triangles.
+    Tessellated,
+    /// Each triangle as its arcs bound it, its distance computed for each texel.
+    Exact,
+    /// Flat triangles where they are enough, exact ones elsewhere.
+    Hybrid,
+    /// Six perspective faces, the baseline.
+    Cube,
+}
+
+/// How finely the tessellated method subdivides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Each triangle into level^2 (Osman's constant level).
+    Constant(u32),
+    /// Each mesh as its longest edge, its distance and `tau` ask, up to a level.
+    Mesh(u32),
+}
+
+/// How the maps of a light are drawn and where they lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passes {
+    /// One pass a map, one layer each.
+    Single,
+    /// All maps of a light in one pass, side by side in one layer.
+    Atlas,
 }
 
 /// Where receivers find their texture coordinates.
@@ -73,6 +106,19 @@ pub struct Settings {
     pub format: Format,
     /// How the maps are made.
     pub method: Method,
+    /// Hybrid method: how far an edge may be drawn from its place, in texels.
+    pub tau: f32,
+    /// Hybrid method: how far a stored distance may be off, relative; by default
+    /// `depth_tolerance`.
+    pub depth_tolerance: Option<f32>,
+    /// Tessellated method: how finely.
+    pub level: Level,
+    /// Cube method: leave out of each face what it cannot see.
+    pub cull_faces: bool,
+    /// How the maps are drawn.
+    pub passes: Passes,
+    /// Keep the lists of sorted triangles of every light, for scenes that stand still.
+    pub keep_lists: bool,
     /// How receivers look.
     pub lookup: Lookup,
     /// How the maps are sampled: the hard test, or 2 x 2 comparisons.
@@ -94,7 +140,13 @@ impl Default for Settings {
         Self {
             size: 1024,
             format: Format::D32,
-            method: Method::Vertex,
+            method: Method::Hybrid,
+            tau: 1.0 / 32.0,
+            depth_tolerance: None,
+            level: Level::Mesh(64),
+            cull_faces: true,
+            passes: Passes::Single,
+            keep_lists: false,
             lookup: Lookup::Pixel,
             sampling: Sampling::Nearest,
             image: [960, 720],
@@ -117,6 +169,8 @@ pub struct Vertex {
     pub normal: Vec3,
     /// Linear reflectance.
     pub albedo: Vec3,
+    /// Where the mask of a masked mesh is read.
+    pub texcoord: Vec2,
 }
 
 /// A pinhole camera, ready for the vertex stage: right, up and forward are orthonormal.
@@ -147,10 +201,12 @@ pub const SPECULAR: f32 = 0.25;
 pub struct Frame {
     /// Vertices of all meshes.
     pub vertices: Vec<Vertex>,
-    /// Triangles.
+    /// Triangles, those of masked meshes after all others.
     pub triangles: Vec<[u32; 3]>,
-    /// Name and triangles of each mesh.
+    /// Name and triangles of each mesh, in the triangles' order.
     pub meshes: Vec<(String, Range<u32>)>,
+    /// Triangles and mask of each masked mesh, in the triangles' order.
+    pub masks: Vec<(Range<u32>, Mask)>,
     /// The light.
     pub light: DpsmLight<f32>,
     /// The light's linear colour.
@@ -211,6 +267,34 @@ pub fn constant_bias(size: u32, format: Format) -> f32 {
     (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
 }
 
+/// The relative error of the hybrid method's distances that a bias of that many units of depth
+/// allows: a third of it, and at most 9/10 of a thousandth.
+pub fn depth_tolerance(bias: f32) -> f32 {
+    (bias / 3.0).min(9e-4)
+}
+
+impl Settings {
+    /// Texels along a side of a map: for the cube method half of `size`, as its faces then have
+    /// the same largest texel (docs/cube.md).
+    pub fn map_size(&self) -> u32 {
+        match self.method {
+            Method::Cube => (self.size / 2).max(1),
+            _ => self.size,
+        }
+    }
+
+    /// tau and depth tolerance of the method: both 0 for the exact one.
+    pub fn tolerances(&self) -> [f32; 2] {
+        let bias = constant_bias(self.size, self.format);
+        match self.method {
+            Method::Hybrid => {
+                [self.tau, self.depth_tolerance.unwrap_or_else(|| depth_tolerance(bias))]
+            }
+            _ => [0.0, 0.0],
+        }
+    }
+}
+
 impl Frame {
     /// Checks the settings and gathers what the passes read.
     ///
@@ -223,71 +307,70 @@ impl Frame {
         camera: &Camera,
         settings: Settings,
     ) -> Result<Self, FrameError> {
-        for mesh in &scene.meshes {
-            let outside = |v: &Vec3| check("", *v).is_err();
-            if let Some(index) = mesh.positions.iter().position(outside) {
-                let (mesh, value) = (mesh.name.clone(), mesh.positions[index]);
-                return Err(FrameError::Vertex { mesh, index, value });
-            }
-        }
+        let Meshes { vertices, triangles, meshes, masks } = Meshes::gather(&scene.meshes)?;
         check("the light's position", position)?;
         if !axis.is_finite() || axis.as_dvec3().try_normalize().is_none() {
             return Err(FrameError::Axis(axis));
         }
         check("the camera's eye", camera.eye)?;
         check("the camera's target", camera.target)?;
+        if settings.method == Method::Cube {
+            check_cube(&settings)?;
+        }
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
-        let mut vertices = Vec::new();
-        let mut triangles = Vec::new();
-        let mut meshes = Vec::new();
-        for mesh in &scene.meshes {
-            let base = vertices.len() as u32;
-            let corner = |(&position, &normal): (&Vec3, &Vec3)| Vertex {
-                position,
-                normal,
-                albedo: mesh.albedo,
-            };
-            vertices.extend(mesh.positions.iter().zip(&mesh.normals).map(corner));
-            let first = triangles.len() as u32;
-            triangles.extend(mesh.triangles.iter().map(|t| t.map(|index| base + index)));
-            meshes.push((mesh.name.clone(), first..triangles.len() as u32));
-        }
         let bias = settings.bias.unwrap_or_else(|| constant_bias(settings.size, settings.format));
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
         }
         let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
         let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
-        let far = settings.far.unwrap_or(reach * FAR_SLACK);
+        // with nothing to reach, far is near's thousandfold all the same
+        let far = settings.far.unwrap_or_else(|| match triangles.is_empty() {
+            true => settings.near.map_or(EMPTY_FAR, |near| near / NEAR_SHARE),
+            false => reach * FAR_SLACK,
+        });
         let near = settings.near.unwrap_or(far * NEAR_SHARE);
         if !(near >= SMALLEST && near < far && far <= LARGEST) {
             return Err(FrameError::Spheres { near, far });
         }
         let [right, up, forward] = basis(axis.as_dvec3()).map(|row| float(row.as_vec3()));
+        let size = settings.map_size();
+        let cube = settings.method == Method::Cube;
+        let guard = if cube { dpsm_cube_guard(size as f32) } else { guard_band(size) };
+        // a face cuts at a plane, whose corners lie this much farther out than its middle
+        let corner = if cube { (1.0 + 2.0 * (1.0 + guard) * (1.0 + guard)).sqrt() } else { 1.0 };
         let light = DpsmLight {
             position: float(position),
-            near,
+            near: near / corner,
             right,
             far,
             up,
-            guard: guard_band(settings.size),
+            guard,
             forward,
-            size: settings.size as f32,
+            size: size as f32,
             rectangle: scalar::Vec4::new(0.0, 0.0, 1.0, 1.0),
             first_layer: 0,
             placement: DPSM_LAYERS,
-            hemispheres: if hemispherical { DPSM_HEMISPHERICAL } else { DPSM_OMNIDIRECTIONAL },
+            hemispheres: match (cube, hemispherical) {
+                (true, _) => DPSM_CUBE_FACES,
+                (false, true) => DPSM_HEMISPHERICAL,
+                (false, false) => DPSM_OMNIDIRECTIONAL,
+            },
             padding: 0,
         };
         let view = View::new(camera, settings.image)?;
-        Ok(Self { vertices, triangles, meshes, light, color: Vec3::ONE, bias, view, settings })
+        let color = Vec3::ONE;
+        Ok(Self { vertices, triangles, meshes, masks, light, color, bias, view, settings })
     }
 }
 
 /// Far's distance beyond the farthest vertex, so that rounding never clips it.
 const FAR_SLACK: f32 = 1.001;
+
+/// Far in metres where there is nothing: any will do.
+const EMPTY_FAR: f32 = 1.0;
 
 /// Near as a share of far.
 const NEAR_SHARE: f32 = 1e-3;
@@ -341,6 +424,17 @@ fn check(what: &'static str, value: Vec3) -> Result<(), FrameError> {
     match value.abs().max_element() <= LARGEST && value.is_finite() {
         true => Ok(()),
         false => Err(FrameError::Range { what, value }),
+    }
+}
+
+/// What a cube's maps cannot do.
+fn check_cube(settings: &Settings) -> Result<(), FrameError> {
+    if settings.lookup == Lookup::Vertex {
+        return Err(FrameError::Cube { what: "lookup by vertex", remedy: "--lookup pixel" });
+    }
+    match settings.passes {
+        Passes::Atlas => Err(FrameError::Cube { what: "atlas", remedy: "--passes single" }),
+        Passes::Single => Ok(()),
     }
 }
 

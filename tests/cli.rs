@@ -68,7 +68,7 @@ fn no_argument_renders_both_scenes_of_the_paper() {
         let picture = image::open(folder.join("dpsm-pictures").join(name)).unwrap();
         assert_eq!((picture.width(), picture.height()), (512, 512), "{name}");
     }
-    for pass in ["front map", "back map", "camera"] {
+    for pass in ["maps", "front view", "back view", "camera"] {
         assert!(stdout.contains(pass), "no time of {pass} in\n{stdout}");
     }
 }
@@ -184,7 +184,11 @@ fn bad_settings_are_refused() {
     refused("size-large", &with(&["--size", "100000"]), &["--size 100000", "16384"]);
     refused("image", &with(&["--image", "0x10"]), &["image width 0"]);
     refused("image-text", &with(&["--image", "10"]), &["960x720"]);
-    refused("method", &with(&["--method", "exact"]), &["--method exact is not built yet"]);
+    let cube = |extra: &[&'static str]| [&with(&["--method", "cube"])[..], extra].concat();
+    refused("lookup", &cube(&["--lookup", "vertex"]), &["lookup by vertex", "--lookup pixel"]);
+    refused("atlas", &cube(&["--passes", "atlas"]), &["atlas", "--passes single"]);
+    refused("passes", &with(&["--passes", "double"]), &["--passes", "atlas"]);
+    refused("level", &with(&["--level", "0"]), &["--level", "1..=64"]);
     refused("method-name", &with(&["--method", "vertx"]), &["vertex"]);
     refused("walls", &["render", "brabec-room", "--walls", "0", "-o", "o.png"], &["walls"]);
     refused("same-point", &with(&["--camera", "0,0,0", "--look-at", "0,0,0"]), &["same point"]);
@@ -394,6 +398,9 @@ fn probe_names_the_line_and_column_of_a_bad_point() {
     refused("probe-latin", &probe(&latin), &["latin.csv:3", "UTF-8"]);
     let count = ["measure", "cornell", "--count", "99999999999"];
     refused("measure-count", &count, &["--count"]);
+    for tau in ["-0.1", "5", "nan", "wide"] {
+        refused("measure-tau", &["measure", "cornell", "--tau", tau], &["--tau", tau]);
+    }
     refused("bake-name", &["bake", "cornell", "-o", "maps.png"], &["maps.png", "EXR"]);
     refused("probe-missing", &probe("nowhere.csv"), &["nowhere.csv"]);
 }
@@ -412,6 +419,10 @@ fn measure_reports_the_same_in_a_table_and_in_json() {
         "500",
         "--seed",
         "5",
+        "--tau",
+        "0.25",
+        "--method",
+        "vertex",
         "--adapter",
         "cpu",
     ];
@@ -422,7 +433,12 @@ fn measure_reports_the_same_in_a_table_and_in_json() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let all = &json["map"]["all"];
     assert!(all["off_1e2"].as_u64() > all["covered"].as_u64().map(|covered| covered / 2));
-    for count in [&all["texels"], &all["missing"], &json["shadow"]["edge_points"]] {
+    assert_eq!(json["map"]["tau"], 0.0, "vertex maps have no tolerance");
+    assert_eq!(json["meshes_as"], "vertex");
+    let faults = [&all["faults_off"], &all["holes"], &all["excused"], &json["map"]["worst"]["x"]];
+    for count in
+        [&all["texels"], &all["missing"], &json["shadow"]["edge_points"]].into_iter().chain(faults)
+    {
         assert!(table.contains(&count.to_string()), "{count} is not in\n{table}");
     }
     let sources: Vec<_> = json["sources"].as_array().unwrap().iter().collect();
@@ -440,4 +456,83 @@ fn measure_reports_the_same_in_a_table_and_in_json() {
     for name in expected {
         assert!(table.contains(name), "{name} is not in\n{table}");
     }
+}
+
+#[test]
+fn tau_is_the_methods_and_hybrid_maps_are_judged_by_it() {
+    let folder = folder("measure-hybrid");
+    let measure = |extra: &[&str]| {
+        let common = ["measure", "brabec-room", "--walls", "1", "--adapter", "cpu"];
+        let small = ["--size", "64", "--count", "50"];
+        let output = dpsm(&folder, &[&common[..], &small, extra].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    for (extra, tau) in
+        [(&[][..], 1.0_f32 / 32.0), (&["--tau", "0.25"], 0.25), (&["--method", "exact"], 0.0)]
+    {
+        let json: serde_json::Value =
+            serde_json::from_str(&measure(&[extra, &["--json"]].concat())).unwrap();
+        assert_eq!(json["map"]["tau"], f64::from(tau), "{extra:?}");
+        let names = json["sources"].as_array().unwrap().iter().map(|source| &source["name"]);
+        let expected = ["f32 arithmetic", "storage format", "resolution", "bias", "filter"];
+        assert_eq!(names.collect::<Vec<_>>(), expected);
+        assert_eq!(json["meshes_as"], "vertex");
+    }
+    assert!(measure(&[]).contains("what the vertex method would do to these meshes"));
+}
+
+#[test]
+fn cube_renders_bakes_probes_and_measures_its_six_faces() {
+    let folder = folder("cube");
+    let cube = ["brabec-room", "--adapter", "cpu", "--method", "cube", "--size", "64"];
+    let run = |command: &str, extra: &[&str]| {
+        let output = dpsm(&folder, &[&[command], &cube[..], extra].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let faces = ["+x", "-x", "+y", "-y", "+z", "-z"];
+    let stdout = run("render", &["--image", "32x24", "--maps", "-o", "room.png"]);
+    let mut expected = vec!["room.png".to_string()];
+    for kind in ["map", "view"] {
+        for face in faces {
+            let timed = if kind == "map" { "maps".into() } else { format!("{face} {kind}") };
+            assert!(stdout.contains(&timed), "{timed}:\n{stdout}");
+            let name = format!("room-{face}-{kind}.png");
+            // half of --size: a face's texels are then as fine as a map's
+            let picture = image::open(folder.join(&name)).unwrap();
+            assert_eq!((picture.width(), picture.height()), (32, 32), "{name}");
+            expected.push(name);
+        }
+    }
+    expected.sort();
+    assert_eq!(files(&folder), expected);
+
+    run("bake", &["-o", "faces.exr"]);
+    let image = exr::prelude::read_all_flat_layers_from_file(folder.join("faces.exr")).unwrap();
+    let names: Vec<_> = image
+        .layer_data
+        .iter()
+        .map(|layer| layer.attributes.layer_name.clone().unwrap().to_string())
+        .collect();
+    assert_eq!(names, faces);
+    // +z looks down at the floor, 2 below; beside the middle it is farther by less than a texel
+    let floor: Vec<f32> =
+        image.layer_data[4].channel_data.list[0].sample_data.values_as_f32().collect();
+    let texel = 2.0 / 30.0_f32;
+    assert!((2.0..=2.0 * (1.0 + texel * texel)).contains(&floor[16 * 32 + 16]));
+
+    std::fs::write(folder.join("points.csv"), "x,y,z,nx,ny,nz\n0.1,0,0.2,0,1,0\n").unwrap();
+    let probed = run("probe", &["--points", "points.csv"]);
+    let row: Vec<f64> =
+        probed.lines().nth(1).unwrap().split(',').map(|field| field.parse().unwrap()).collect();
+    assert_eq!((row[0], row[1], row[6]), (1.0, 4.0, 1.0), "lit, on +z, lit in truth");
+    let place = [row[2].abs().max(row[3].abs()), row[2].abs().min(row[3].abs())];
+    assert!((place[0] - 0.1).abs() <= 1e-6 && (place[1] - 0.05).abs() <= 1e-6, "{probed}");
+
+    let json: serde_json::Value =
+        serde_json::from_str(&run("measure", &["--count", "200", "--json"])).unwrap();
+    let all = &json["map"]["all"];
+    assert_eq!((&all["texels"], &all["faults_off"]), (&(6 * 30 * 30).into(), &0.into()));
+    assert_eq!(json["meshes"], serde_json::json!([]));
 }

@@ -3,90 +3,18 @@
 #![cfg(feature = "scene")]
 
 mod common;
+#[path = "common/scenes.rs"]
+mod scenes;
 
 use common::EPS;
 use dpsm::cpu;
 use dpsm::measure::*;
 use dpsm::render::{Format, Frame, Method, Settings};
 use dpsm::scalar::depth::dpsm_depth;
-use dpsm::scalar::float::Vec2;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
-use dpsm::scalar::paraboloid::dpsm_texture_to_disk;
-use dpsm::scene::{self, Camera, Mesh, Options, Scene};
-use dpsm::truth::Truth;
+use dpsm::scene::Mesh;
 use glam::{DVec3, Vec3, vec3};
-
-const SIZE: u32 = 128;
-
-fn settings() -> Settings {
-    Settings { size: SIZE, image: [64, 48], ..Settings::default() }
-}
-
-fn room(walls: u32, settings: Settings) -> Frame {
-    let scene = scene::open("brabec-room", &Options { walls }).unwrap();
-    let light = scene.default_light();
-    let camera = scene.camera.unwrap();
-    Frame::new(&scene, light.position, Vec3::NEG_Y, false, &camera, settings).unwrap()
-}
-
-/// Maps whose every texel stores the truth along its centre.
-fn exact_maps(frame: &Frame, truth: &Truth) -> DepthMaps {
-    let size = frame.settings.size;
-    let empty = DepthMaps::empty(size, frame.light.hemispheres, Sampling::Nearest);
-    let mut maps = empty.clone();
-    let bench = Bench::new(frame, &empty, truth);
-    for hemisphere in 0..maps.layers {
-        for y in 0..size {
-            for x in 0..size {
-                let st = Vec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / f64::from(size);
-                let uv = dpsm_texture_to_disk(st, bench.light.guard);
-                if let Some(distance) = bench.first_distance(uv, hemisphere) {
-                    let depth = dpsm_depth(distance, bench.light.near, bench.light.far);
-                    let index = maps.index(x.into(), y.into(), hemisphere);
-                    maps.depths[index] = frame.settings.format.store(depth as f32);
-                }
-            }
-        }
-    }
-    maps
-}
-
-/// A horizontal square of half-width `half` at height `y`, its centre at x = `x`.
-fn square(name: &str, x: f32, y: f32, half: f32) -> Mesh {
-    Mesh {
-        name: name.into(),
-        positions: [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
-            .map(|(s, t)| vec3(x + s * half, y, t * half))
-            .to_vec(),
-        normals: vec![Vec3::Y; 4],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        albedo: Vec3::ONE,
-    }
-}
-
-/// A light at the origin, a floor 2 below, and half a floor 1 below whose border is x = 0, right
-/// under the light.
-fn half_covered(settings: Settings) -> Frame {
-    frame_of(vec![square("floor", 0.0, -2.0, 50.0), square("cover", 50.0, -1.0, 50.0)], settings)
-}
-
-/// Meshes around a light at the origin.
-fn frame_of(meshes: Vec<Mesh>, settings: Settings) -> Frame {
-    let scene = Scene {
-        name: "made".into(),
-        meshes,
-        lights: Vec::new(),
-        camera: None,
-        warnings: Vec::new(),
-    };
-    let camera = Camera {
-        eye: vec3(0.0, 5.0, 0.1),
-        target: vec3(0.0, -2.0, 0.0),
-        up: Vec3::NEG_Z,
-        vertical_fov: 1.0,
-    };
-    Frame::new(&scene, Vec3::ZERO, Vec3::NEG_Y, false, &camera, settings).unwrap()
-}
+use scenes::{SIZE, exact_maps, frame_of, half_covered, room, settings, square};
 
 #[test]
 fn exact_maps_have_no_map_error() {
@@ -94,7 +22,7 @@ fn exact_maps_have_no_map_error() {
         let frame = room(1, Settings { format, ..settings() });
         let truth = truth_of(&frame);
         let maps = exact_maps(&frame, &truth);
-        let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+        let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
         assert_eq!((error.all.missing, error.all.extra), (0, 0));
         // half a step of the format and the rounding to f32, over the nearest distance
         let range = f64::from(frame.light.far - frame.light.near);
@@ -117,7 +45,7 @@ fn swapped_hemispheres_are_seen() {
     let mut maps = exact_maps(&frame, &truth);
     let half = maps.depths.len() / 2;
     maps.depths.rotate_left(half);
-    let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+    let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
     assert!(error.all.off_1e2 > error.all.covered / 20, "{error:?}");
 }
 
@@ -131,7 +59,7 @@ fn maps_upside_down_are_seen() {
         let rows: Vec<Vec<f32>> = layer.chunks(size).rev().map(<[f32]>::to_vec).collect();
         layer.copy_from_slice(&rows.concat());
     }
-    let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+    let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
     assert!(error.all.off_1e2 > error.all.covered / 20, "{error:?}");
 }
 
@@ -144,7 +72,7 @@ fn near_left_out_of_the_depth_is_seen() {
     for depth in maps.depths.iter_mut().filter(|depth| **depth < 1.0) {
         *depth = (near + *depth * (far - near)) / far;
     }
-    let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+    let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
     assert!(error.all.off_1e3 > error.all.covered / 2, "{error:?}");
 }
 
@@ -159,7 +87,7 @@ fn texels_are_counted_by_how_far_they_are_off() {
         for depth in maps.depths.iter_mut().filter(|depth| **depth < 1.0) {
             *depth = dpsm_depth((near + *depth * (far - near)) * factor, near, far);
         }
-        let error = map_error(&Bench::new(&frame, &maps, &truth), || ()).all;
+        let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ()).all;
         let expected = (error.covered * above_1e2, error.covered * above_1e3);
         assert_eq!((error.off_1e2, error.off_1e3), expected, "factor {factor}");
         // rounding to f32 of depths up to 1, over distances from 0.3 m of a range of about 3.5 m
@@ -180,7 +108,7 @@ fn missing_and_extra_texels_are_counted() {
     let up = maps.index(64, 64, 1);
     assert_eq!(maps.depths[up], 1.0, "nothing is above the light");
     maps.depths[up] = 0.5;
-    let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+    let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
     assert_eq!((error.all.missing, error.all.extra), (1, 1));
     assert_eq!((error.rim.missing, error.rim.extra), (0, 0));
 }
@@ -189,7 +117,7 @@ fn missing_and_extra_texels_are_counted() {
 fn vertex_method_fails_on_walls_of_two_triangles_and_most_texels_are_off() {
     let frame = room(1, Settings { size: 512, ..settings() });
     let (maps, truth) = (cpu::make_maps(&frame).unwrap(), truth_of(&frame));
-    let error = map_error(&Bench::new(&frame, &maps, &truth), || ());
+    let error = map_error(&Bench::new(&frame, &maps, &truth), 0.0, || ());
     assert!(error.all.off_1e2 * 2 > error.all.covered, "{error:?}");
     assert!(error.all.missing * 20 > error.all.texels, "{error:?}");
 }
@@ -232,6 +160,7 @@ fn affine_depth_of_small_triangles_stays_within_its_bound() {
             normals: vec![normal; 3],
             triangles: vec![[0, 1, 2]],
             albedo: Vec3::ONE,
+            ..Mesh::default()
         };
         let frame = frame_of(vec![mesh], settings());
         let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
@@ -264,6 +193,7 @@ fn measures_of_a_box_agree_with_its_closed_form() {
         normals: vec![Vec3::Y; 8],
         triangles,
         albedo: Vec3::ONE,
+        ..Mesh::default()
     };
     let shield = square("shield", 0.0, -0.1, 0.05);
     let frame = frame_of(vec![room, shield], Settings { near: Some(0.2), ..settings() });
@@ -304,7 +234,7 @@ fn measures_of_a_box_agree_with_its_closed_form() {
     }
     let truth = truth_of(&frame);
     let bench = Bench::new(&frame, &maps, &truth);
-    let error = map_error(&bench, || ()).all;
+    let error = map_error(&bench, 0.0, || ()).all;
     assert_eq!((error.missing, error.extra), (0, 0));
     // half an eps of depths up to 1 of a range below 5 over distances from 1, and the rotation's
     // rounding to f32, eps / 2 in each of three terms

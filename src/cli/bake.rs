@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dpsm::render::Frame;
-use dpsm::scalar::depth::dpsm_distance;
 use dpsm::scalar::maps::DepthMaps;
 
 use super::measure::{prepare, pretty};
@@ -16,12 +15,13 @@ use super::{AdapterChoice, CliError, describe};
 /// Make the maps and write them as EXR, distances in world units
 #[derive(Debug, Args)]
 #[command(after_help = "\
-One layer a hemisphere (`front`, `back`) with the channel `distance`: f32, world units, infinite
-where nothing was hit. MAPS.json beside it holds the light's parameters. Nothing is
+One layer a hemisphere (`front`, `back`), or a cube's face (`+x`, `-x`, `+y`, `-y`, `+z`, `-z`), with
+the channel `distance`: f32, world units, infinite where nothing was hit. MAPS.json beside it holds the light's parameters. Nothing is
 chosen at random.
 
 Example:
-  dpsm bake brabec-room --light=-1,2,0.5 --size 512 -o maps.exr")]
+  dpsm bake brabec-room --light=-1,2,0.5 --size 512 -o maps.exr
+  dpsm bake cornell --method cube -o faces.exr")]
 pub struct BakeArguments {
     #[command(flatten)]
     setup: SetupArguments,
@@ -60,6 +60,9 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "hemispheres": light.hemispheres,
         "format": names.format,
         "method": names.method,
+        "tau": names.tau,
+        "level": names.level,
+        "passes": names.passes,
         "filter": names.filter,
         "bias": names.bias,
         "constant_bias": frame.bias,
@@ -80,16 +83,13 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
     print(&text)
 }
 
-/// The maps as an EXR file, one layer a hemisphere.
+/// The maps as an EXR file, one layer a hemisphere or face.
 fn exr_bytes(path: &Path, frame: &Frame, maps: &DepthMaps) -> Result<Vec<u8>, CliError> {
     use exr::prelude::*;
-    let distance = |&depth: &f32| match depth < 1.0 {
-        true => dpsm_distance(depth, frame.light.near, frame.light.far),
-        false => f32::INFINITY,
-    };
     let size = maps.size as usize;
-    let layer = |(index, name): (u32, &str)| {
-        let samples = maps.layer(index).iter().map(distance).collect();
+    let names = frame.settings.method.projection().names();
+    let layer = |(index, &name): (u32, &&str)| {
+        let samples = frame.distances(maps, index).collect();
         let channel = AnyChannel::new("distance", FlatSamples::F32(samples));
         let attributes = LayerAttributes::named(name);
         Layer::new(
@@ -99,7 +99,7 @@ fn exr_bytes(path: &Path, frame: &Frame, maps: &DepthMaps) -> Result<Vec<u8>, Cl
             AnyChannels::sort(std::iter::once(channel).collect()),
         )
     };
-    let layers: Vec<_> = (0..maps.layers).zip(["front", "back"]).map(layer).collect();
+    let layers: Vec<_> = (0..maps.layers).zip(names).map(layer).collect();
     let bounds = IntegerBounds::from_dimensions((size, size));
     let image = Image::from_layers(ImageAttributes::new(bounds), layers);
     let mut bytes = std::io::Cursor::new(Vec::new());

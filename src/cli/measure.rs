@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::Args;
 use dpsm::gpu::Device;
 use dpsm::measure::{self, Bench, MapError, PenumbraError, Point, ShadowError, Source};
-use dpsm::render::{Frame, Lookup};
+use dpsm::render::{Frame, Lookup, Projection};
 use dpsm::scalar::maps::DepthMaps;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -18,9 +18,13 @@ use super::{AdapterChoice, CliError, describe};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Map error, shadow error, penumbra error and their sources; docs/measure.md explains each figure.
+Hybrid maps are judged with the tolerance that they are made with, --tau, and all others with 0: a
+silhouette so many texels outside a texel excuses its error.
 
 Examples:
   dpsm measure brabec-room --walls 1 --size 512
+  dpsm measure brabec-room --walls 1 --size 512 --method cube
+  dpsm measure cornell --tau 0.05
   dpsm measure atrium.obj --light 0,4,0 --method fragment-depth --json")]
 pub struct MeasureArguments {
     #[command(flatten)]
@@ -77,6 +81,9 @@ struct Report {
     shadow: ShadowError,
     penumbra: PenumbraError,
     sources: Vec<Source>,
+    /// The method whose errors `meshes` are: this one, or what `vertex` would do in its place.
+    meshes_as: String,
+    /// Empty for a cube, which has no disk.
     meshes: Vec<MeshSources>,
 }
 
@@ -105,7 +112,8 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         eprintln!("dpsm: the camera sees surfaces through {seen} of {asked} places of the image");
     }
     let progress = bar("map rows", (maps.size * maps.layers) as usize);
-    let map = measure::map_error(&bench, || progress.inc(1));
+    let [tau, _] = frame.settings.tolerances();
+    let map = measure::map_error(&bench, tau.into(), || progress.inc(1));
     progress.finish_and_clear();
     let progress = bar("points", points.len());
     let shadow = measure::shadow_error(&bench, &points, || progress.inc(1));
@@ -121,19 +129,28 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         bowed_edges: measure::bowed_edges(&bench, triangles.clone()),
         affine_depth: measure::affine_depth(&bench, triangles.clone()),
     };
+    let options = arguments.setup.names();
+    let meshes_as = match measure::draws_straight(frame.settings.method) {
+        true => options.method.clone(),
+        false => "vertex".to_string(),
+    };
     let report = Report {
         scene,
         computed_by: describe(device.as_ref()),
         triangles: frame.triangles.len(),
         size: maps.size,
-        options: arguments.setup.names(),
+        options,
         constant_bias: frame.bias,
         seed: arguments.seed,
         map,
         shadow,
         penumbra,
         sources,
-        meshes: frame.meshes.iter().map(by_mesh).collect(),
+        meshes_as,
+        meshes: match bench.projection {
+            Projection::Paraboloid => frame.meshes.iter().map(by_mesh).collect(),
+            Projection::Cube => Vec::new(),
+        },
     };
     match arguments.json {
         true => print(&pretty(&report)?),
@@ -145,7 +162,7 @@ fn table(report: &Report) -> String {
     let share = |part: usize, whole: usize| 100.0 * part as f64 / whole.max(1) as f64;
     let mut text = String::new();
     let Report { scene, computed_by, triangles, size, options, constant_bias, .. } = report;
-    let Names { format, method, filter, bias } = options;
+    let Names { format, method, filter, bias, .. } = options;
     let _ = writeln!(text, "{computed_by}");
     let _ = writeln!(
         text,
@@ -156,8 +173,10 @@ fn table(report: &Report) -> String {
         "\nmap error (of the distance)\n{:<10}{:>10}{:>10}{:>9}{:>8}{:>9}{:>9}{:>11}{:>11}",
         "", "texels", "covered", "missing", "extra", "> 1%", "> 0.1%", "99th", "largest"
     );
-    let MapError { all, rim, centre } = &report.map;
-    for (name, band) in [("all", all), ("r > 0.9", rim), ("r <= 0.9", centre)] {
+    let MapError { tau, all, rim, centre, worst } = &report.map;
+    let tau = *tau as f32; // as it was given
+    let bands = [("all", all), ("r > 0.9", rim), ("r <= 0.9", centre)];
+    for (name, band) in bands {
         let _ = writeln!(
             text,
             "{name:<10}{:>10}{:>10}{:>9}{:>8}{:>8.2}%{:>8.2}%{:>11.2e}{:>11.2e}",
@@ -169,6 +188,40 @@ fn table(report: &Report) -> String {
             share(band.off_1e3, band.covered),
             band.percentile_99,
             band.largest
+        );
+    }
+    let _ = writeln!(
+        text,
+        "\nmap faults (> 0.1%, missing or extra, no silhouette within {tau} texel)\n\
+         {:<10}{:>10}{:>10}{:>9}{:>8}{:>10}{:>21}",
+        "", "faults", "> 0.1%", "holes", "extra", "excused", "largest of the rest"
+    );
+    for (name, band) in bands {
+        let _ = writeln!(
+            text,
+            "{name:<10}{:>10}{:>10}{:>9}{:>8}{:>10}{:>21.2e}",
+            band.faults(),
+            band.faults_off,
+            band.holes,
+            band.faults_extra,
+            band.excused,
+            band.largest_rest
+        );
+    }
+    if let Some(worst) = worst {
+        let [u, v] = worst.uv;
+        let _ = writeln!(
+            text,
+            "  worst: layer {}, texel ({}, {}), place ({u:.6}, {v:.6}): stored {:.7}, true {:.7}, off by \
+             {:.2e}; incidence {:.2} degrees, eps tan {:.1e}",
+            worst.layer,
+            worst.x,
+            worst.y,
+            worst.stored,
+            worst.hit,
+            worst.error,
+            worst.incidence.to_degrees(),
+            worst.conditioning
         );
     }
     let s = &report.shadow;
@@ -212,6 +265,12 @@ fn table(report: &Report) -> String {
         let at = if place.is_empty() { String::new() } else { format!(", at {place}") };
         let predicted = predicted.map_or("-".into(), |predicted| format!("{predicted:.4e}"));
         let _ = writeln!(text, "{name:<18}{measured:>13.4e}{predicted:>13}  {unit}{at}");
+    }
+    if report.meshes.is_empty() {
+        return text;
+    }
+    if report.meshes_as != *method {
+        let _ = writeln!(text, "\nwhat the {} method would do to these meshes:", report.meshes_as);
     }
     let _ = writeln!(
         text,

@@ -21,7 +21,8 @@ use super::{AdapterChoice, CliError, describe};
 The input's header is x,y,z or x,y,z,nx,ny,nz: world units, unit normals. One line of output for
 each line of input, in its order, with the header
 visibility,hemisphere,u,v,stored,own,truth,edge: u and v are disk coordinates in the hemisphere's
-map, stored and own distances from the light, truth 1 where ray casting sees the light, edge 1
+map, and for a cube its face 0 to 5 (+x, -x, +y, -y, +z, -z) and the place on the face's plane at
+distance 1; stored and own distances from the light, truth 1 where ray casting sees the light, edge 1
 where the rays over the texel's footprint do not all agree. Nothing is chosen at random.
 
 Example:
@@ -55,10 +56,10 @@ pub fn probe(adapter: AdapterChoice, arguments: &ProbeArguments) -> Result<(), C
     let judged: Vec<Judgement> = given.iter().map(judge).collect();
     progress.finish_and_clear();
     let (near, far) = (bench.light.near, bench.light.far);
-    let outside = judged.iter().filter(|j| !(near..=far).contains(&j.own)).count();
+    let outside = judged.iter().filter(|judged| !judged.inside).count();
     if outside > 0 {
         eprintln!(
-            "dpsm: {outside} points lie inside near {near} or beyond far {far}: compared at the sphere"
+            "dpsm: {outside} points lie inside near {near} or beyond far {far}: compared there"
         );
     }
     let text = match arguments.json {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use dpsm::gpu::Device;
 use dpsm::render::{Frame, Lookup, Picture, Rendering, Settings};
+use dpsm::scalar::depth::dpsm_depth;
 use dpsm::scalar::maps::DepthMaps;
 use dpsm::scene::{self, Options};
 use glam::Vec3;
@@ -14,7 +15,7 @@ use super::output::{Outputs, print};
 use super::setup::{self, SetupArguments};
 use super::{AdapterChoice, CliError, describe};
 
-/// Render a scene lit by a point light, its shadows from paraboloid maps
+/// Render a scene lit by a point light, its shadows from paraboloid maps or a cube's
 #[derive(Debug, Args)]
 #[command(after_help = after_help())]
 pub struct RenderArguments {
@@ -29,7 +30,7 @@ pub struct RenderArguments {
     /// Width and height of the picture
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "960x720")]
     image: [u32; 2],
-    /// Also write the shadow maps and what the light sees of each hemisphere
+    /// Also write the shadow maps and what the light sees of each hemisphere or face
     #[arg(long)]
     maps: bool,
 }
@@ -42,7 +43,9 @@ fn after_help() -> String {
     text.push_str(
         "\nExamples:\n  \
          dpsm render brabec-room --maps -o room.png\n  \
-         dpsm render brabec-room --light=-1,2,0.5 --walls 1 -o bowed.png\n  \
+         dpsm render brabec-room --light=-1,2,0.5 --walls 1 --method vertex -o bowed.png\n  \
+         dpsm render brabec-room --method cube --maps -o cube.png\n  \
+         dpsm render cornell --method tessellated --level 8 -o subdivided.png\n  \
          dpsm render brabec-ceiling --size 512 --format d16 -o ceiling.png\n  \
          dpsm render cornell --method fragment-depth --filter hardware -o cornell.png\n  \
          dpsm render atrium.glb --light 0,4,0 --adapter cpu -o atrium.png",
@@ -114,7 +117,7 @@ fn picture(
 ) -> Result<String, CliError> {
     let rendering = setup::render(device, frame)?;
     outputs.add_picture(output, &rendering.lit)?;
-    companions(&rendering, output, outputs)?;
+    companions(frame, &rendering, output, outputs)?;
     let mut report = format!("{scene}: {} triangles\n", frame.triangles.len());
     for (pass, time) in &rendering.timings {
         let _ = writeln!(report, "  {pass:<12}{:9.3} ms", time.as_secs_f64() * 1e3);
@@ -131,29 +134,36 @@ fn finish(mut report: String, outputs: Outputs) -> Result<(), CliError> {
     print(&report)
 }
 
-/// Adds the maps as grey pictures and the hemisphere views beside the main picture.
-fn companions(rendering: &Rendering, output: &Path, outputs: &mut Outputs) -> Result<(), CliError> {
+/// Adds the maps as grey pictures and the light's views beside the main picture.
+fn companions(
+    frame: &Frame,
+    rendering: &Rendering,
+    output: &Path,
+    outputs: &mut Outputs,
+) -> Result<(), CliError> {
+    let names = frame.settings.method.projection().names();
     let beside = |kind: &str| {
         let stem = output.file_stem().unwrap_or_default().to_string_lossy();
         output.with_file_name(format!("{stem}-{kind}.png"))
     };
     if let Some(maps) = &rendering.maps {
-        for (layer, name) in (0..maps.layers).zip(["front-map", "back-map"]) {
-            outputs.add_picture(&beside(name), &grey(maps, layer))?;
+        for (layer, name) in (0..maps.layers).zip(names) {
+            outputs.add_picture(&beside(&format!("{name}-map")), &grey(frame, maps, layer))?;
         }
     }
-    for (view, name) in rendering.views.iter().zip(["front-view", "back-view"]) {
-        outputs.add_picture(&beside(name), view)?;
+    for (view, name) in rendering.views.iter().zip(names) {
+        outputs.add_picture(&beside(&format!("{name}-view")), view)?;
     }
     Ok(())
 }
 
 /// A map as a grey picture: black at the near sphere, white at the far one or where it is empty.
-fn grey(maps: &DepthMaps, layer: u32) -> Picture {
-    let shade = |&depth: &f32| {
-        let value = (depth * 255.0).round() as u8;
+fn grey(frame: &Frame, maps: &DepthMaps, layer: u32) -> Picture {
+    let (near, far) = (frame.light.near, frame.light.far);
+    let shade = |distance: f32| {
+        let value = (dpsm_depth(distance, near, far) * 255.0).round() as u8;
         [value, value, value, 255]
     };
-    let pixels = maps.layer(layer).iter().map(shade).collect();
+    let pixels = frame.distances(maps, layer).map(shade).collect();
     Picture { width: maps.size, height: maps.size, pixels }
 }

@@ -2,7 +2,8 @@
 
 use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
-use dpsm::render::{Format, Frame, Lookup, Method, Settings};
+use dpsm::measure::MAX_TAU;
+use dpsm::render::{Format, Frame, Level, Lookup, Method, Passes, Settings};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Light, Options};
 use dpsm::{cpu, render};
@@ -19,21 +20,34 @@ pub struct SetupArguments {
     /// The light's position; by default the scene's own light
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     light: Option<Vec3>,
-    /// A hemispherical light: one map, the other half always in shadow
+    /// A hemispherical light: one map, the other half always in shadow; a cube has all six faces
     #[arg(long)]
     hemisphere: bool,
     /// The light's main axis; by default the light's own, or down
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     axis: Option<Vec3>,
-    /// Texels along a side of a map
+    /// Texels along a side of a map; a cube's faces have half as many, for texels as fine
     #[arg(long, default_value_t = Settings::default().size)]
     size: u32,
     /// Storage of the maps
     #[arg(long, value_enum, default_value = "d32")]
     format: FormatName,
     /// How the maps are made
-    #[arg(long, value_enum, default_value = "vertex")]
+    #[arg(long, value_enum, default_value = "hybrid")]
     method: MethodName,
+    /// How far off an edge may be drawn, in texels, 0 to 4: for hybrid, whose maps `measure` judges
+    /// by it too, and for tessellated without --level
+    #[arg(long, value_name = "TEXELS", default_value_t = Settings::default().tau, value_parser = parse_tau, allow_negative_numbers = true)]
+    tau: f32,
+    /// For tessellated: each triangle into N x N; by default each mesh as tau asks
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    level: Option<u32>,
+    /// For cube: draw all triangles to each face, also those that it cannot see
+    #[arg(long)]
+    no_cull_faces: bool,
+    /// How the maps are drawn
+    #[arg(long, value_enum, default_value = "single")]
+    passes: PassesName,
     /// How the maps are read
     #[arg(long, value_enum, default_value = "hard")]
     filter: FilterName,
@@ -68,15 +82,39 @@ enum FormatName {
     D32,
 }
 
-/// Methods by their option names, the planned ones included.
+/// Methods by their option names.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum MethodName {
+    /// Straight edges, all interpolated (Brabec 2002)
     Vertex,
+    /// Straight edges, the distance of the interpolated position
     FragmentDepth,
+    /// `vertex` on subdivided triangles (Osman 2006)
     Tessellated,
+    /// Each triangle as its arcs bound it, its distance by texel
     Exact,
+    /// Flat triangles where they are enough, exact ones elsewhere
     Hybrid,
+    /// Six perspective faces, to compare with
     Cube,
+}
+
+/// Passes by their option names.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum PassesName {
+    /// One pass a map, one layer each
+    Single,
+    /// All maps of a light in one pass, side by side in one layer
+    Atlas,
+}
+
+/// Parses a tolerance in texels.
+fn parse_tau(text: &str) -> Result<f32, String> {
+    let tau: f32 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    match (0.0..=MAX_TAU).contains(&f64::from(tau)) {
+        true => Ok(tau),
+        false => Err(format!("`{text}` is not from 0 to {MAX_TAU} texels")),
+    }
 }
 
 /// Filters by their option names, the planned ones included.
@@ -103,6 +141,9 @@ enum BiasName {
 pub struct Names {
     pub format: String,
     pub method: String,
+    pub tau: f32,
+    pub level: Option<u32>,
+    pub passes: String,
     pub filter: String,
     pub bias: String,
 }
@@ -113,6 +154,9 @@ impl SetupArguments {
         Names {
             format: name(self.format),
             method: name(self.method),
+            tau: self.tau,
+            level: self.level,
+            passes: name(self.passes),
             filter: name(self.filter),
             bias: name(self.bias),
         }
@@ -135,7 +179,17 @@ impl SetupArguments {
             method: match self.method {
                 MethodName::Vertex => Method::Vertex,
                 MethodName::FragmentDepth => Method::FragmentDepth,
-                planned => return Err(not_built("--method", planned, "vertex, fragment-depth")),
+                MethodName::Tessellated => Method::Tessellated,
+                MethodName::Exact => Method::Exact,
+                MethodName::Hybrid => Method::Hybrid,
+                MethodName::Cube => Method::Cube,
+            },
+            tau: self.tau,
+            level: self.level.map_or(Settings::default().level, Level::Constant),
+            cull_faces: !self.no_cull_faces,
+            passes: match self.passes {
+                PassesName::Single => Passes::Single,
+                PassesName::Atlas => Passes::Atlas,
             },
             lookup,
             sampling: match self.filter {
@@ -151,6 +205,7 @@ impl SetupArguments {
                 planned => return Err(not_built("--bias", planned, "constant")),
             },
             views,
+            ..Settings::default()
         };
         let scene = scene::open(&self.scene, &Options { walls: self.walls })?;
         for warning in &scene.warnings {

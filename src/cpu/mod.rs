@@ -1,5 +1,7 @@
 //! The rendering of a frame by the scalar ports alone, with no adapter.
 
+pub mod cube;
+mod maps;
 mod raster;
 
 pub use raster::{Fragment, triangle};
@@ -11,14 +13,12 @@ use glam::Vec3;
 use crate::render::{
     AMBIENT, Frame, FrameError, Lookup, Method, Picture, Rendering, SPECULAR, Vertex, View, float,
 };
-use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
+use crate::scalar::caster::{dpsm_caster_keep, dpsm_caster_vertex};
 use crate::scalar::float::{self as scalar, Float, Vec2, Vec4, select};
 use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
 use crate::scalar::maps::DepthMaps;
 use crate::scalar::shade::{dpsm_highlight, dpsm_lambert, dpsm_shade};
-use crate::scalar::visibility::{
-    DpsmReceiverVertex, dpsm_receiver_vertex, dpsm_visibility, dpsm_visibility_vertex,
-};
+use crate::scalar::visibility::{DpsmReceiverVertex, dpsm_receiver_vertex, dpsm_visibility_vertex};
 
 /// Renders a frame on the processor.
 pub fn render(frame: &Frame) -> Result<Rendering, FrameError> {
@@ -33,10 +33,10 @@ pub fn render(frame: &Frame) -> Result<Rendering, FrameError> {
     timings.push(("camera".to_string(), start.elapsed()));
     let mut views = Vec::new();
     if frame.settings.views {
-        for (hemisphere, name) in (0..hemispheres).zip(["front view", "back view"]) {
+        for (map, name) in (0..hemispheres).zip(frame.settings.method.projection().names()) {
             let start = Instant::now();
-            views.push(view_pass(frame, &maps, hemisphere));
-            timings.push((name.to_string(), start.elapsed()));
+            views.push(view_pass(frame, &maps, map));
+            timings.push((format!("{name} view"), start.elapsed()));
         }
     }
     let maps = frame.settings.views.then_some(maps);
@@ -52,15 +52,15 @@ fn timed_maps(
     frame: &Frame,
     timings: &mut Vec<(String, Duration)>,
 ) -> Result<DepthMaps, FrameError> {
-    let (size, hemispheres) = (frame.settings.size, frame.light.hemispheres);
+    let (size, hemispheres) = (frame.settings.map_size(), frame.light.hemispheres);
     reserve::<f32>("--size", u64::from(size) * u64::from(size) * u64::from(hemispheres))?;
     let mut maps = DepthMaps::empty(size, hemispheres, frame.settings.sampling);
     let layers = maps.depths.chunks_mut(size as usize * size as usize);
-    for (hemisphere, (layer, name)) in (0..).zip(layers.zip(["front map", "back map"])) {
-        let start = Instant::now();
-        map_pass(frame, hemisphere, layer);
-        timings.push((name.to_string(), start.elapsed()));
+    let start = Instant::now();
+    for (hemisphere, layer) in (0..).zip(layers) {
+        maps::map_pass(frame, hemisphere, layer)?;
     }
+    timings.push(("maps".to_string(), start.elapsed()));
     Ok(maps)
 }
 
@@ -69,6 +69,12 @@ fn reserve<T>(what: &'static str, items: u64) -> Result<(), FrameError> {
     let failed = FrameError::Memory { what, bytes: items * size_of::<T>() as u64 };
     let mut probe = Vec::<T>::new();
     probe.try_reserve_exact(items as usize).map_err(|_| failed)
+}
+
+/// What a triangle's corners have, or `None` where an index is out of range.
+fn pick<T: Copy>(items: &[T], corners: [u32; 3]) -> Option<[T; 3]> {
+    let [a, b, c] = corners.map(|corner| items.get(corner as usize).copied());
+    Some([a?, b?, c?])
 }
 
 /// Interpolates three values with a fragment's weights.
@@ -89,39 +95,9 @@ fn vector([x, y, z]: [f32; 3]) -> scalar::Vec3<f32> {
     scalar::Vec3::new(x, y, z)
 }
 
-/// The maps store true distances; the bias is the receiver's, so that it may differ by receiver.
-const NO_BIAS: f32 = 0.0;
-
-/// One hemisphere's map: stored depths of all casters.
-fn map_pass(frame: &Frame, hemisphere: u32, layer: &mut [f32]) {
-    let Frame { light, settings, .. } = frame;
-    let place = |vertex: &Vertex| {
-        let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
-        (p, dpsm_caster_vertex(p, *light, NO_BIAS))
-    };
-    let placed: Vec<_> = frame.vertices.iter().map(place).collect();
-    for corners in &frame.triangles {
-        let corners = corners.map(|index| placed[index as usize]);
-        let clip = corners.map(|(_, vertex)| vertex.clip);
-        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
-            let (keep, depth) = match settings.method {
-                Method::Vertex => {
-                    let [value] =
-                        mix(fragment.weights, corners, |(_, vertex)| [vertex.hemisphere_value]);
-                    (dpsm_caster_keep(value), fragment.depth)
-                }
-                Method::FragmentDepth => {
-                    let p = vector(mix(fragment.weights, corners, |(p, _)| words(p)));
-                    let stored = dpsm_caster_fragment(p, *light, NO_BIAS);
-                    (stored.keep, stored.depth)
-                }
-            };
-            if keep && (0.0..=1.0).contains(&depth) {
-                let texel = &mut layer[(fragment.y * settings.size + fragment.x) as usize];
-                *texel = texel.min(settings.format.store(depth));
-            }
-        });
-    }
+/// False where a fragment is a hole of its triangle's mask.
+fn opaque(frame: &Frame, triangle: u32, fragment: &Fragment) -> bool {
+    frame.opaque(triangle, fragment.weights.map(f64::from))
 }
 
 /// The visible fragment of each pixel: triangle and weights.
@@ -133,13 +109,13 @@ fn visible(
     clip: &[Vec4<f32>],
     image: [u32; 2],
     smallest_w: f32,
-    nearness: impl Fn(usize, &Fragment) -> Option<f32>,
+    nearness: impl Fn(u32, &Fragment) -> Option<f32>,
 ) -> Vec<Visible> {
     let pixels = image[0] as usize * image[1] as usize;
     let mut nearest = vec![f32::NEG_INFINITY; pixels];
     let mut seen = vec![None; pixels];
-    for (index, corners) in triangles.iter().enumerate() {
-        let clip = corners.map(|corner| clip[corner as usize]);
+    for (index, corners) in (0..).zip(triangles) {
+        let Some(clip) = pick(clip, *corners) else { continue };
         triangle(clip, image, smallest_w, &mut |fragment| {
             let pixel = (fragment.y * image[0] + fragment.x) as usize;
             let Some(nearness) = nearness(index, &fragment) else {
@@ -147,7 +123,7 @@ fn visible(
             };
             if nearness > nearest[pixel] {
                 nearest[pixel] = nearness;
-                seen[pixel] = Some((index as u32, fragment.weights));
+                seen[pixel] = Some((index, fragment.weights));
             }
         });
     }
@@ -211,7 +187,8 @@ pub fn surface_points(frame: &Frame) -> Vec<Option<SurfacePoint>> {
 fn seen_by_camera(frame: &Frame) -> Vec<Visible> {
     let Frame { view, settings, .. } = frame;
     let clip: Vec<_> = frame.vertices.iter().map(|v| project(view, v.position)).collect();
-    let nearness = |_: usize, fragment: &Fragment| Some(fragment.depth);
+    let nearness =
+        |index: u32, fragment: &Fragment| opaque(frame, index, fragment).then_some(fragment.depth);
     visible(&frame.triangles, &clip, settings.image, view.near, nearness)
 }
 
@@ -230,7 +207,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
     color(&seen, settings.image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let visibility = match settings.lookup {
-            Lookup::Pixel => dpsm_visibility(maps, surface.p, *light, frame.bias),
+            Lookup::Pixel => frame.visibility(maps, surface.p),
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
@@ -246,8 +223,20 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
     })
 }
 
-/// What the light sees of one hemisphere.
-fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
+/// What the light sees of one hemisphere or face.
+fn view_pass(frame: &Frame, maps: &DepthMaps, map: u32) -> Picture {
+    let seen = match frame.settings.method {
+        Method::Cube => cube::seen(frame, map),
+        _ => seen_by_light(frame, map),
+    };
+    color(&seen, [frame.settings.map_size(); 2], |triangle, weights| {
+        let surface = Surface::new(frame, triangle, weights);
+        surface.shade(frame, vector([0.0; 3]), frame.visibility(maps, surface.p))
+    })
+}
+
+/// What the light sees through each texel of one hemisphere.
+fn seen_by_light(frame: &Frame, hemisphere: u32) -> Vec<Visible> {
     let Frame { light, settings, .. } = frame;
     let place = |vertex: &Vertex| {
         let p = dpsm_flip(dpsm_to_light(float(vertex.position), *light), hemisphere);
@@ -256,16 +245,11 @@ fn view_pass(frame: &Frame, maps: &DepthMaps, hemisphere: u32) -> Picture {
     let placed: Vec<_> = frame.vertices.iter().map(place).collect();
     let clip: Vec<_> = placed.iter().map(|vertex| vertex.clip).collect();
     let image = [settings.size; 2];
-    let seen = visible(&frame.triangles, &clip, image, 1.0, |index, fragment| {
-        let corners = frame.triangles[index].map(|i| placed[i as usize]);
+    visible(&frame.triangles, &clip, image, 1.0, |index, fragment| {
+        let corners = frame.triangles[index as usize].map(|i| placed[i as usize]);
         let [value] = mix(fragment.weights, corners, |vertex| [vertex.hemisphere_value]);
         let inside = dpsm_caster_keep(value) && (0.0..=1.0).contains(&fragment.depth);
-        inside.then_some(-fragment.depth)
-    });
-    color(&seen, image, |triangle, weights| {
-        let surface = Surface::new(frame, triangle, weights);
-        let visibility = dpsm_visibility(maps, surface.p, *light, frame.bias);
-        surface.shade(frame, vector([0.0; 3]), visibility)
+        (inside && opaque(frame, index, fragment)).then_some(-fragment.depth)
     })
 }
 

@@ -1,12 +1,11 @@
 //! The camera pass, the hemisphere views, and the whole rendering of a frame.
 
-use super::maps::{
-    MeshBuffers, ShadowMaps, depth_attachment, depth_state, light_words, shader, uniform_buffer,
-    vertex_state,
-};
-use super::timer::{Stamps, render_writes};
+use super::maps::ShadowMaps;
+use super::mesh::{MeshBuffers, POSITION_LAYOUT, SURFACE_LAYOUT};
+use super::passes::{depth_attachment, depth_state, light_words, shader, uniform_buffer};
+use super::timer::{ALONE, render_writes};
 use super::{Device, GpuError};
-use crate::render::{AMBIENT, Frame, Lookup, Picture, Rendering, SPECULAR};
+use crate::render::{AMBIENT, Frame, Lookup, Picture, Projection, Rendering, SPECULAR};
 use crate::scalar::maps::{DepthMaps, Sampling};
 
 /// Format of the pictures: the attachment encodes sRGB.
@@ -15,32 +14,35 @@ const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Format of the camera's own depth buffer, reversed: 0 is infinitely far.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Renders a frame: maps, lit image and, where the settings ask for them, hemisphere views.
+/// Renders a frame: maps, lit image and, where the settings ask for them, a view of each
+/// hemisphere or face.
 pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
     check_image(device, frame.settings.image)?;
     let mesh = MeshBuffers::new(device, frame)?;
-    let maps = ShadowMaps::new(device, frame)?;
-    let mut timings = Vec::new();
-    for (hemisphere, name) in (0..maps.hemispheres()).zip(["front map", "back map"]) {
-        let record = |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
-            maps.record(encoder, hemisphere, &mesh, stamps);
-        };
-        timings.push(device.time_warm(name, record)?);
-    }
+    let maps = ShadowMaps::new(device, frame, &mesh)?;
+    let mut timings = vec![device.time_warm("maps", |encoder, stamps| {
+        maps.record(encoder, &mesh, stamps);
+    })?];
     let camera = Camera::new(device, frame, &maps)?;
-    let entry = match frame.settings.lookup {
-        Lookup::Pixel => "pixel_lookup",
-        Lookup::Vertex => "vertex_lookup",
+    let projection = frame.settings.method.projection();
+    let stages = match (projection, frame.settings.lookup) {
+        (Projection::Cube, _) => ["pixel_lookup", "cube_lookup_fragment"],
+        (Projection::Paraboloid, Lookup::Pixel) => ["pixel_lookup", "pixel_lookup_fragment"],
+        (Projection::Paraboloid, Lookup::Vertex) => ["vertex_lookup", "vertex_lookup_fragment"],
     };
-    let pass = Pass { name: "camera", entry, reversed: true, image: frame.settings.image };
+    let pass = Pass { name: "camera", stages, reversed: true, image: frame.settings.image };
     let (lit, time) = camera.draw(device, &pass, &mesh, 0)?;
     timings.push(time);
     let mut views = Vec::new();
     if frame.settings.views {
-        let image = [frame.settings.size; 2];
-        for (hemisphere, name) in (0..maps.hemispheres()).zip(["front view", "back view"]) {
-            let pass = Pass { name, entry: "view", reversed: false, image };
-            let (view, time) = camera.draw(device, &pass, &mesh, hemisphere)?;
+        let image = [frame.settings.map_size(); 2];
+        let stages = match projection {
+            Projection::Cube => ["cube_view", "cube_view_fragment"],
+            Projection::Paraboloid => ["view", "view_fragment"],
+        };
+        for (map, name) in (0..frame.light.hemispheres).zip(projection.names()) {
+            let pass = Pass { name: &format!("{name} view"), stages, reversed: false, image };
+            let (view, time) = camera.draw(device, &pass, &mesh, map)?;
             views.push(view);
             timings.push(time);
         }
@@ -55,12 +57,8 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
 /// Makes a frame's maps alone and reads them back.
 pub fn make_maps(device: &Device, frame: &Frame) -> Result<DepthMaps, GpuError> {
     let mesh = MeshBuffers::new(device, frame)?;
-    let maps = ShadowMaps::new(device, frame)?;
-    let encoder = device.encode("the maps", |encoder| {
-        for hemisphere in 0..maps.hemispheres() {
-            maps.record(encoder, hemisphere, &mesh, None);
-        }
-    })?;
+    let maps = ShadowMaps::new(device, frame, &mesh)?;
+    let encoder = device.encode("the maps", |encoder| maps.record(encoder, &mesh, None))?;
     device.submit("the maps", encoder)?;
     maps.download(device, frame.settings.sampling)
 }
@@ -79,8 +77,8 @@ fn check_image(device: &Device, image: [u32; 2]) -> Result<(), GpuError> {
 /// One colour pass.
 struct Pass<'a> {
     name: &'a str,
-    /// Vertex entry point; the fragment's has `_fragment` behind it.
-    entry: &'a str,
+    /// Entry points of the vertex and of the fragment stage.
+    stages: [&'a str; 2],
     /// Depth buffer with 1 near and 0 far.
     reversed: bool,
     /// Width and height.
@@ -97,7 +95,11 @@ struct Camera<'a> {
 
 impl<'a> Camera<'a> {
     fn new(device: &Device, frame: &Frame, maps: &'a ShadowMaps) -> Result<Self, GpuError> {
-        let module = shader(device, "camera.wesl", include_str!("camera.wesl"))?;
+        let module = shader(
+            device,
+            "camera.wesl",
+            concat!(include_str!("camera.wesl"), include_str!("mask.wesl")),
+        )?;
         let view = &frame.view;
         let rows = [
             (view.eye, view.near),
@@ -108,7 +110,7 @@ impl<'a> Camera<'a> {
         ];
         let row = |(v, last): (glam::Vec3, f32)| [v.x, v.y, v.z, last].map(f32::to_bits);
         let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
-        words.extend(light_words(&frame.light));
+        words.extend(light_words(&maps.lights[0]));
         words.extend([frame.bias.to_bits(), 0, 0, 0]);
         let uniform = uniform_buffer(device, &words)?;
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
@@ -119,7 +121,7 @@ impl<'a> Camera<'a> {
     fn draw(
         &self,
         device: &Device,
-        &Pass { name, entry, reversed, image: [width, height] }: &Pass<'_>,
+        &Pass { name, stages, reversed, image: [width, height] }: &Pass<'_>,
         mesh: &MeshBuffers,
         instance: u32,
     ) -> Result<(Picture, (String, std::time::Duration)), GpuError> {
@@ -127,7 +129,7 @@ impl<'a> Camera<'a> {
             true => (wgpu::CompareFunction::Greater, 0.0),
             false => (wgpu::CompareFunction::Less, 1.0),
         };
-        let pipeline = device.step(name, || self.pipeline(device, entry, compare))?;
+        let pipeline = device.step(name, || self.pipeline(device, stages, compare))?;
         let target = |format, usage| {
             device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(name),
@@ -143,7 +145,7 @@ impl<'a> Camera<'a> {
         let (color, depth, group) = device.step(name, || {
             let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
             let depth = target(DEPTH, wgpu::TextureUsages::empty());
-            (color, depth, self.group(device, &pipeline))
+            (color, depth, self.group(device, &pipeline, mesh))
         })?;
         let color_view = color.create_view(&Default::default());
         let depth_view = depth.create_view(&Default::default());
@@ -160,7 +162,7 @@ impl<'a> Camera<'a> {
                     },
                 })],
                 depth_stencil_attachment: Some(depth_attachment(&depth_view, clear)),
-                timestamp_writes: render_writes(stamps),
+                timestamp_writes: render_writes(stamps, ALONE),
                 ..Default::default()
             });
             pass.set_pipeline(&pipeline);
@@ -173,19 +175,24 @@ impl<'a> Camera<'a> {
     fn pipeline(
         &self,
         device: &Device,
-        entry: &str,
+        [vertex, fragment]: [&str; 2],
         compare: wgpu::CompareFunction,
     ) -> wgpu::RenderPipeline {
         device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(entry),
+            label: Some(vertex),
             layout: None,
-            vertex: vertex_state(&self.module, entry),
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some(vertex),
+                compilation_options: Default::default(),
+                buffers: &[Some(POSITION_LAYOUT), Some(SURFACE_LAYOUT)],
+            },
             primitive: Default::default(),
             depth_stencil: Some(depth_state(DEPTH, compare)),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &self.module,
-                entry_point: Some(&format!("{entry}_fragment")),
+                entry_point: Some(fragment),
                 compilation_options: Default::default(),
                 targets: &[Some(COLOR.into())],
             }),
@@ -194,7 +201,12 @@ impl<'a> Camera<'a> {
         })
     }
 
-    fn group(&self, device: &Device, pipeline: &wgpu::RenderPipeline) -> wgpu::BindGroup {
+    fn group(
+        &self,
+        device: &Device,
+        pipeline: &wgpu::RenderPipeline,
+        mesh: &MeshBuffers,
+    ) -> wgpu::BindGroup {
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout: &pipeline.get_bind_group_layout(0),
@@ -208,6 +220,7 @@ impl<'a> Camera<'a> {
                     binding: 2,
                     resource: wgpu::BindingResource::Sampler(&self.sampler),
                 },
+                wgpu::BindGroupEntry { binding: 6, resource: mesh.masks.as_entire_binding() },
             ],
         })
     }

@@ -2,15 +2,19 @@
 
 mod camera;
 mod evaluate;
+mod lists;
 mod maps;
+mod mesh;
+mod passes;
 mod texels;
 mod timer;
 
 pub use camera::{comparison_sampler, make_maps, render};
 pub use evaluate::{Evaluation, Evaluator, Resources, entry_point};
-pub use maps::{MeshBuffers, ShadowMaps};
+pub use maps::{Parts, ShadowMaps};
+pub use mesh::MeshBuffers;
 pub use texels::Texels;
-pub use timer::{Stamps, compute_writes};
+pub use timer::{ALONE, Ends, Stamps, compute_writes, render_writes};
 
 use std::time::Duration;
 
@@ -101,6 +105,9 @@ pub enum GpuError {
     /// Linking failed.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// The frame asks for too much.
+    #[error(transparent)]
+    Frame(#[from] crate::render::FrameError),
     /// naga rejected the linked text.
     #[error(transparent)]
     Validate(#[from] ValidateError),
@@ -155,11 +162,16 @@ impl Device {
 
     /// Opens a device on a given adapter, with the adapter's own limits.
     pub fn of(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        Self::with_limits(adapter, adapter.limits())
+    }
+
+    /// Opens a device on a given adapter, with limits that it has or lower ones.
+    pub fn with_limits(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self, GpuError> {
         let info = adapter.get_info();
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("dpsm"),
             required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
-            required_limits: adapter.limits(),
+            required_limits: limits,
             ..Default::default()
         };
         let (device, queue) =
@@ -253,6 +265,19 @@ impl Device {
         let descriptor =
             wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         self.step(label, || self.device.create_buffer(&descriptor))
+    }
+
+    /// A buffer that holds these bytes.
+    pub fn upload(
+        &self,
+        label: &'static str,
+        bytes: &[u8],
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        let buffer = self.buffer(label, bytes.len() as u64, usage)?;
+        self.step(label, || self.queue.write_buffer(&buffer, 0, bytes))?;
+        Ok(buffer)
     }
 }
 

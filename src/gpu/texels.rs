@@ -1,11 +1,11 @@
 //! Depth textures from and to arrays, for formats that cannot be copied.
 
-use super::maps::{
+use super::passes::{
     depth_attachment, depth_state, depth_texture, layer_view, shader, uniform_buffer,
 };
 use super::{Device, GpuError};
 use crate::render::Format;
-use crate::scalar::maps::{DepthMaps, Sampling};
+use crate::scalar::maps::DepthMaps;
 
 /// Texels along a side of a workgroup of texels.wesl's download.
 const TILE: u32 = 8;
@@ -23,17 +23,16 @@ impl Texels {
         Ok(Self { module })
     }
 
-    /// Every layer's stored depths.
+    /// Every layer's stored depths, row by row.
     pub fn download(
         &self,
         device: &Device,
         view: &wgpu::TextureView,
         texture: &wgpu::Texture,
-        sampling: Sampling,
-    ) -> Result<DepthMaps, GpuError> {
+    ) -> Result<Vec<f32>, GpuError> {
         use wgpu::BufferUsages as Usage;
-        let (size, layers) = (texture.width(), texture.depth_or_array_layers());
-        let rows = layers * size;
+        let size = texture.width();
+        let rows = texture.depth_or_array_layers() * texture.height();
         let band = (device.chunk_bytes / (u64::from(size) * 4)).clamp(1, u64::from(rows)) as u32;
         let bytes = u64::from(band) * u64::from(size) * 4;
         let texels = device.buffer("texels", bytes, Usage::STORAGE | Usage::COPY_SRC)?;
@@ -80,7 +79,7 @@ impl Texels {
             let band: Vec<f32> = bytemuck::pod_collect_to_vec(&device.read(&back, bytes)?);
             depths.extend(band);
         }
-        Ok(DepthMaps { size, layers, depths, sampling })
+        Ok(depths)
     }
 
     /// A depth texture that stores the given maps.
@@ -91,7 +90,7 @@ impl Texels {
         format: Format,
     ) -> Result<wgpu::Texture, GpuError> {
         use wgpu::BufferUsages as Usage;
-        let texture = depth_texture(device, maps.size, maps.layers, format.texture())?;
+        let texture = depth_texture(device, [maps.size; 2], maps.layers, format.texture())?;
         let bytes: &[u8] = bytemuck::cast_slice(&maps.depths);
         let depths =
             device.buffer("depths", bytes.len() as u64, Usage::STORAGE | Usage::COPY_DST)?;

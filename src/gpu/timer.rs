@@ -8,21 +8,41 @@ use super::{Device, GpuError};
 /// Where a pass writes its timestamps; `None` without the feature.
 pub type Stamps<'a> = Option<&'a wgpu::QuerySet>;
 
+/// Which ends of what is timed a pass is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ends {
+    /// It begins with this pass.
+    pub first: bool,
+    /// It ends with this pass.
+    pub last: bool,
+}
+
+/// One pass is all that is timed.
+pub const ALONE: Ends = Ends { first: true, last: true };
+
 /// A render pass's timestamp writes.
-pub fn render_writes(stamps: Stamps<'_>) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
-    stamps.map(|query_set| wgpu::RenderPassTimestampWrites {
+pub fn render_writes(
+    stamps: Stamps<'_>,
+    ends: Ends,
+) -> Option<wgpu::RenderPassTimestampWrites<'_>> {
+    let query_set = stamps.filter(|_| ends.first || ends.last)?;
+    Some(wgpu::RenderPassTimestampWrites {
         query_set,
-        beginning_of_pass_write_index: Some(0),
-        end_of_pass_write_index: Some(1),
+        beginning_of_pass_write_index: ends.first.then_some(0),
+        end_of_pass_write_index: ends.last.then_some(1),
     })
 }
 
 /// A compute pass's timestamp writes.
-pub fn compute_writes(stamps: Stamps<'_>) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
-    stamps.map(|query_set| wgpu::ComputePassTimestampWrites {
+pub fn compute_writes(
+    stamps: Stamps<'_>,
+    ends: Ends,
+) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    let query_set = stamps.filter(|_| ends.first || ends.last)?;
+    Some(wgpu::ComputePassTimestampWrites {
         query_set,
-        beginning_of_pass_write_index: Some(0),
-        end_of_pass_write_index: Some(1),
+        beginning_of_pass_write_index: ends.first.then_some(0),
+        end_of_pass_write_index: ends.last.then_some(1),
     })
 }
 

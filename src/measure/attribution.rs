@@ -7,12 +7,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, PenumbraError, Point};
-use crate::render::{Format, Method};
-use crate::scalar::depth::dpsm_depth;
+use crate::render::{Format, Method, Projection};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::hemisphere::dpsm_flip;
+use crate::scalar::light::DpsmLight;
 use crate::scalar::paraboloid::{dpsm_disk_to_texture, dpsm_project, dpsm_texture_to_disk};
-use crate::scalar::visibility::dpsm_lookup;
 
 /// One source of error, all others turned off.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,24 +31,33 @@ pub struct Source {
 /// Points along an arc or a side of a triangle at which errors are looked for.
 const STEPS: u32 = 32;
 
-/// Every source that the library has so far; the filter's is the penumbra error measured before.
+/// Every source of the frame's method; the filter's is the penumbra error measured before. Bowed
+/// edges and affine depth are sources of the methods that draw a mesh's triangles with straight
+/// edges on a disk, `vertex` and `fragment-depth`, alone.
 pub fn attribute(bench: &Bench<'_>, points: &[Point], penumbra: &PenumbraError) -> Vec<Source> {
     let all = 0..bench.frame.triangles.len() as u32;
-    vec![
+    let mut sources = vec![
         arithmetic(bench, points),
         storage(bench, points, bench.frame.settings.format),
         resolution(bench, points),
-        bowed_edges(bench, all.clone()),
-        affine_depth(bench, all),
-        bias(bench, points),
-        Source {
-            name: "filter",
-            measured: penumbra.penumbra_rmse,
-            predicted: None,
-            unit: "RMSE of the visibility in the penumbra",
-            place: String::new(),
-        },
-    ]
+    ];
+    if draws_straight(bench.frame.settings.method) {
+        sources.extend([bowed_edges(bench, all.clone()), affine_depth(bench, all)]);
+    }
+    sources.push(bias(bench, points));
+    sources.push(Source {
+        name: "filter",
+        measured: penumbra.penumbra_rmse,
+        predicted: None,
+        unit: "RMSE of the visibility in the penumbra",
+        place: String::new(),
+    });
+    sources
+}
+
+/// True of the methods that draw a mesh's own triangles with straight edges on a disk.
+pub fn draws_straight(method: Method) -> bool {
+    matches!(method, Method::Vertex | Method::FragmentDepth)
 }
 
 /// The source with the largest measured value.
@@ -59,7 +67,7 @@ fn largest(sources: impl ParallelIterator<Item = Source>, empty: Source) -> Sour
 
 /// f32 arithmetic: a receiver's own depth by the f32 port against f64, in world units.
 fn arithmetic(bench: &Bench<'_>, points: &[Point]) -> Source {
-    let (near, far) = (bench.light.near, bench.light.far);
+    let DpsmLight { near, far, .. } = bench.light;
     let source = |measured, predicted, place| Source {
         name: "f32 arithmetic",
         measured,
@@ -69,34 +77,40 @@ fn arithmetic(bench: &Bench<'_>, points: &[Point]) -> Source {
     };
     let at = |point: &Point| {
         let p = bench.to_light(point.world).narrow();
-        let exact = dpsm_lookup(p.widen(), bench.light).depth;
-        let depth = dpsm_lookup(p, bench.frame.light).depth;
-        // docs/visibility.md
-        let bound = f64::from(f32::EPSILON) * (10.5 * p.widen().length() + 4.5 * near);
-        source((f64::from(depth) - exact).abs() * (far - near), bound, format!("{}", point.world))
+        let exact = bench.projection.lookup(p.widen(), bench.light).depth;
+        let depth = bench.projection.lookup(p, bench.frame.light).depth;
+        let (_, uv) = bench.projection.place(p.widen());
+        // docs/visibility.md, docs/cube.md
+        let bound = match bench.projection {
+            Projection::Paraboloid => 10.5 * p.widen().length() + 4.5 * near,
+            Projection::Cube => 10.5 * far,
+        };
+        let bound = f64::from(f32::EPSILON) * bound / (far - near);
+        let measured = bench.distance(depth.into(), uv) - bench.distance(exact, uv);
+        source(measured.abs(), bench.spread(exact, bound, uv), format!("{}", point.world))
     };
     largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
 
 /// Storage: what the format makes of exact depths, in world units; the bound is one quantum.
 fn storage(bench: &Bench<'_>, points: &[Point], format: Format) -> Source {
-    let (near, far) = (bench.light.near, bench.light.far);
-    let source = |measured, place| Source {
+    // a depth is rounded to f32 before it is stored: half an eps of at most 1
+    let off = f64::from(format.quantum()) + 0.5 * f64::from(f32::EPSILON);
+    let source = |measured, predicted, place| Source {
         name: "storage format",
         measured,
-        // a depth is rounded to f32 before it is stored: half an eps of at most 1
-        predicted: Some(
-            (f64::from(format.quantum()) + 0.5 * f64::from(f32::EPSILON)) * (far - near),
-        ),
+        predicted: Some(predicted),
         unit: "world units of distance",
         place,
     };
     let at = |point: &Point| {
-        let exact = dpsm_depth(bench.to_light(point.world).length(), near, far).clamp(0.0, 1.0);
+        let (map, uv) = bench.place(point);
+        let exact = bench.projection.depth(bench.to_light(point.world), map, bench.light);
         let stored = format.store(exact as f32);
-        source((f64::from(stored) - exact).abs() * (far - near), format!("{}", point.world))
+        let measured = bench.distance(stored.into(), uv) - bench.distance(exact, uv);
+        source(measured.abs(), bench.spread(exact, off, uv), format!("{}", point.world))
     };
-    largest(points.par_iter().map(at), source(0.0, String::new()))
+    largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
 
 /// Resolution: the truth along the texel's centre in place of the point's own, everything else
@@ -148,10 +162,8 @@ fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
         place,
     };
     let at = |point: &Point| {
-        let near = bench.light.near;
-        let occluder = bench.truth.occluder(bench.origin, point.world, point.triangle, near);
         let own = (point.world - bench.origin).length();
-        let gap = occluder.map(|hit| own - hit.distance).filter(|gap| *gap <= bias);
+        let gap = bench.occluder(point).map(|hit| own - hit.distance).filter(|gap| *gap <= bias);
         source(gap.unwrap_or(0.0), format!("{}", point.world))
     };
     largest(points.par_iter().map(at), source(0.0, String::new()))
@@ -161,7 +173,8 @@ fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
 /// texels. Predicted: the sagitta c^2 |m_z| N / 16 of a chord c whose plane through the light has
 /// the unit normal m, divided by 1 + guard.
 ///
-/// Edges with both ends in the stored disk of a hemisphere.
+/// Edges with both ends in the stored disk of a hemisphere. What straight edges would do to the
+/// meshes, whatever the method; a cube's map has no disk.
 pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     let source = |measured, predicted, place| Source {
         name: "bowed edges",
@@ -203,8 +216,9 @@ pub fn bowed_edges(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
 }
 
 /// Affine interpolation: how far the distance that is stored over a triangle's image is from that
-/// of the triangle there, as a share of it; the interpolated distance for the vertex method, the
-/// distance of the interpolated position for the fragment-depth method. Predicted, for the former:
+/// of the triangle there, as a share of it; the distance of the interpolated position for the
+/// fragment-depth method, the interpolated distance, as the vertex method stores it, for all
+/// others. Predicted, for the former:
 /// phi^2 / 6 ((1 + sin^2 a) / cos^2 a + r tan a), for the triangle's angular size phi, and the
 /// steepest incidence a and largest r of its corners (docs/measure.md).
 ///
@@ -213,11 +227,11 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
     let method = bench.frame.settings.method;
     let source = |measured, predicted, place| Source {
         name: match method {
-            Method::Vertex => "affine depth",
             Method::FragmentDepth => "affine position",
+            _ => "affine depth",
         },
         measured,
-        predicted: (method == Method::Vertex).then_some(predicted),
+        predicted: (method != Method::FragmentDepth).then_some(predicted),
         unit: "of the distance",
         place,
     };
@@ -240,8 +254,8 @@ pub fn affine_depth(bench: &Bench<'_>, triangles: Range<u32>) -> Source {
                 let p = a * weights[0] + b * weights[1] + c * weights[2];
                 let Some([s, t, u]) = image_weights(disk, dpsm_project(p)) else { continue };
                 let affine = match method {
-                    Method::Vertex => s * a.length() + t * b.length() + u * c.length(),
                     Method::FragmentDepth => (a * s + b * t + c * u).length(),
+                    _ => s * a.length() + t * b.length() + u * c.length(),
                 };
                 worst = worst.max((affine - p.length()).abs() / p.length());
             }

@@ -3,109 +3,162 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Bench, percentile};
-use crate::scalar::depth::dpsm_distance;
+use super::Bench;
+use super::band::{Band, Part, larger};
+use super::silhouette::{Marks, Search};
 use crate::scalar::float::Vec2;
 use crate::scalar::paraboloid::dpsm_texture_to_disk;
 
-/// Where the rim band begins: r above this.
+/// Where the rim band begins: r above this; on a cube's face r = max(|u|, |v|).
 const RIM: f64 = 0.9;
 
-/// Texels of one part of the maps, and what is wrong with them.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Band {
-    /// Texels whose centre lies in the band.
-    pub texels: usize,
-    /// Of those, texels where a surface is hit and one is stored.
-    pub covered: usize,
-    /// Texels where a surface is hit and none is stored.
-    pub missing: usize,
-    /// Texels where none is hit and one is stored.
-    pub extra: usize,
-    /// Covered texels off by more than 1% of the distance.
-    pub off_1e2: usize,
-    /// Covered texels off by more than 0.1% of the distance.
-    pub off_1e3: usize,
-    /// Largest relative error of the covered texels.
-    pub largest: f64,
-    /// 99th percentile of the covered texels' relative error.
-    pub percentile_99: f64,
+/// Largest tolerance in texels: each examined texel costs 16 (1 + 2 tau)^2 rays.
+pub const MAX_TAU: f64 = 4.0;
+
+/// The covered texel with the largest error of those that no silhouette passes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WorstTexel {
+    /// Layer: the hemisphere, or the face.
+    pub layer: u32,
+    /// Column, from the left.
+    pub x: u32,
+    /// Row, from the top.
+    pub y: u32,
+    /// Place of its centre in the map.
+    pub uv: [f64; 2],
+    /// Stored distance.
+    pub stored: f64,
+    /// True distance.
+    pub hit: f64,
+    /// Relative error.
+    pub error: f64,
+    /// Angle in radians between the texel's direction and the normal of what it hits.
+    pub incidence: f64,
+    /// eps tan(incidence): what turning the direction by the f32 eps changes the distance by,
+    /// relatively.
+    pub conditioning: f64,
 }
 
 /// The error of all maps of a light.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MapError {
-    /// Every texel whose centre lies inside the rim, r <= 1.
+    /// How far outside a texel a silhouette excuses it, in texels.
+    pub tau: f64,
+    /// Every texel whose centre lies inside the rim, r <= 1; on a face r = max(|u|, |v|).
     pub all: Band,
     /// Those with r > 0.9.
     pub rim: Band,
     /// The others.
     pub centre: Band,
+    /// The texel of `largest_rest`; `None` where no texel is covered or all are excused.
+    pub worst: Option<WorstTexel>,
 }
 
-/// One texel inside the rim: its radius, and the stored and the true distance.
-struct Texel {
-    r: f64,
-    stored: Option<f64>,
-    hit: Option<f64>,
+/// One texel: its place, and the stored and the true distance.
+#[derive(Clone, Copy)]
+pub struct Texel {
+    pub index: usize,
+    pub layer: u32,
+    pub x: u32,
+    pub y: u32,
+    pub uv: Vec2<f64>,
+    pub stored: Option<f64>,
+    pub hit: Option<f64>,
 }
 
 /// Compares every texel whose centre lies inside the rim; `row_done` is called after each row.
 ///
-/// A stored depth of 1 is an empty texel.
-pub fn map_error(bench: &Bench<'_>, row_done: impl Fn() + Sync) -> MapError {
+/// A stored depth of 1 is an empty texel. `tau` is a tolerance in texels, 0 to [`MAX_TAU`]; what
+/// lies outside counts as the nearer of the two, and what is not a number as 0.
+pub fn map_error(bench: &Bench<'_>, tau: f64, row_done: impl Fn() + Sync) -> MapError {
+    let tau = if tau.is_nan() { 0.0 } else { tau.clamp(0.0, MAX_TAU) };
     let rows: Vec<(u32, u32)> = (0..bench.maps.layers)
         .flat_map(|layer| (0..bench.maps.size).map(move |y| (layer, y)))
         .collect();
-    let texels: Vec<Texel> = rows
+    let rows: Vec<[Part; 2]> = rows
         .into_par_iter()
-        .flat_map_iter(|(layer, y)| {
-            let texels: Vec<Texel> =
-                (0..bench.maps.size).filter_map(|x| texel(bench, layer, x, y)).collect();
+        .map(|(layer, y)| {
+            let mut parts = <[Part; 2]>::default();
+            for x in 0..bench.maps.size {
+                let index = bench.maps.index(x.into(), y.into(), layer);
+                let r = bench.projection.radius(place(bench, index).3);
+                if r <= 1.0 {
+                    parts[usize::from(r <= RIM)].add(bench, &Texel::at(bench, index));
+                }
+            }
             row_done();
-            texels
+            parts
         })
         .collect();
-    let rim = |texel: &&Texel| texel.r > RIM;
+    let [mut rim, mut centre] = <[Part; 2]>::default();
+    for [in_rim, in_centre] in rows {
+        rim.join(in_rim);
+        centre.join(in_centre);
+    }
+    let search = Search { bench, tau };
+    let marks = Marks::new(bench.maps.depths.len());
+    rim.ask(&marks);
+    centre.ask(&marks);
+    search.mark_edges(&marks);
+    let worst = [&mut rim, &mut centre].map(|part| part.judge(&search, &marks));
+    let worst = worst.into_iter().fold(None, larger);
+    let (in_rim, in_centre) = (rim.finish(), centre.finish());
+    rim.join(centre);
     MapError {
-        all: band(texels.iter()),
-        rim: band(texels.iter().filter(rim)),
-        centre: band(texels.iter().filter(|texel| !rim(texel))),
+        tau,
+        all: rim.finish(),
+        rim: in_rim,
+        centre: in_centre,
+        worst: worst.and_then(|off| Texel::at(bench, off.index).describe(bench)),
     }
 }
 
-fn texel(bench: &Bench<'_>, layer: u32, x: u32, y: u32) -> Option<Texel> {
-    let size = f64::from(bench.maps.size);
-    let st = Vec2::new((f64::from(x) + 0.5) / size, (f64::from(y) + 0.5) / size);
-    let uv = dpsm_texture_to_disk(st, bench.light.guard);
-    let r = uv.length();
-    if r > 1.0 {
-        return None;
-    }
-    let depth = bench.maps.depths[bench.maps.index(x.into(), y.into(), layer)];
-    let distance = dpsm_distance(f64::from(depth), bench.light.near, bench.light.far);
-    let stored = (depth < 1.0).then_some(distance);
-    Some(Texel { r, stored, hit: bench.first_distance(uv, layer) })
+/// Layer, column, row and the centre's place of a texel.
+fn place(bench: &Bench<'_>, index: usize) -> (u32, u32, u32, Vec2<f64>) {
+    let side = bench.maps.size as usize;
+    let (layer, y, x) = (index / side / side, index / side % side, index % side);
+    let st = Vec2::new(x as f64 + 0.5, y as f64 + 0.5) / side as f64;
+    (layer as u32, x as u32, y as u32, dpsm_texture_to_disk(st, bench.light.guard))
 }
 
-fn band<'t>(texels: impl Iterator<Item = &'t Texel>) -> Band {
-    let mut band = Band::default();
-    let mut errors = Vec::new();
-    for texel in texels {
-        band.texels += 1;
-        match (texel.stored, texel.hit) {
-            (Some(stored), Some(hit)) => errors.push((stored - hit).abs() / hit),
-            (None, Some(_)) => band.missing += 1,
-            (Some(_), None) => band.extra += 1,
-            (None, None) => {}
+impl Texel {
+    /// The texel of an index in the maps.
+    pub fn at(bench: &Bench<'_>, index: usize) -> Self {
+        let (layer, x, y, uv) = place(bench, index);
+        let depth = bench.maps.depths[index];
+        let stored = (depth < 1.0).then(|| bench.distance(f64::from(depth), uv));
+        Self { index, layer, x, y, uv, stored, hit: bench.first_distance(uv, layer) }
+    }
+
+    /// Relative error; infinite where only one of both is there, 0 where neither is.
+    pub fn error(&self) -> f64 {
+        match (self.stored, self.hit) {
+            (Some(stored), Some(hit)) => (stored - hit).abs() / hit,
+            (None, None) => 0.0,
+            _ => f64::INFINITY,
         }
     }
-    errors.sort_by(f64::total_cmp);
-    let above = |limit: f64| errors.len() - errors.partition_point(|&error| error <= limit);
-    band.covered = errors.len();
-    band.off_1e2 = above(1e-2);
-    band.off_1e3 = above(1e-3);
-    band.largest = errors.last().copied().unwrap_or(0.0);
-    band.percentile_99 = percentile(&errors, 0.99);
-    band
+
+    /// True where a silhouette passes through the grown texel.
+    pub fn is_excused(&self, search: &Search<'_>, marks: &Marks) -> bool {
+        marks.is_passed(self.index) || search.passes(self.layer, self.x, self.y)
+    }
+
+    fn describe(&self, bench: &Bench<'_>) -> Option<WorstTexel> {
+        let direction = bench.direction(self.uv, self.layer);
+        let normal = bench.normal(bench.first_hit(direction)?.triangle);
+        // by sine and cosine, accurate at 0 and at 90 degrees
+        let tangent = normal.cross(direction).length() / normal.dot(direction).abs();
+        Some(WorstTexel {
+            layer: self.layer,
+            x: self.x,
+            y: self.y,
+            uv: [self.uv.x, self.uv.y],
+            stored: self.stored?,
+            hit: self.hit?,
+            error: self.error(),
+            incidence: tangent.atan(),
+            conditioning: f64::from(f32::EPSILON) * tangent,
+        })
+    }
 }

@@ -4,25 +4,27 @@
 //! `docs/measure.md` says what each figure means.
 
 mod attribution;
+mod band;
 mod map;
 mod penumbra;
 mod shadow;
+mod silhouette;
 
-pub use attribution::{Source, affine_depth, attribute, bowed_edges, left_out};
-pub use map::{Band, MapError, map_error};
+pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straight, left_out};
+pub use band::Band;
+pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error};
 pub use shadow::{Judgement, ShadowError, judge, shadow_error};
 
 use fastrand::Rng;
 use glam::{DMat3, DVec3};
 
-use crate::render::Frame;
+use crate::render::{Frame, Projection, texel};
 use crate::scalar::float::{Vec2, Vec3};
-use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
+use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::DepthMaps;
-use crate::scalar::paraboloid::{dpsm_project, dpsm_texel_pitch, dpsm_unproject};
-use crate::truth::{Ray, Truth};
+use crate::truth::{Hit, Ray, Truth};
 
 /// A frame, its maps and the truth about its scene.
 #[derive(Debug)]
@@ -35,6 +37,8 @@ pub struct Bench<'a> {
     pub truth: &'a Truth,
     /// The light in f64.
     pub light: DpsmLight<f64>,
+    /// What the maps are.
+    pub projection: Projection,
     /// The light's world position.
     pub origin: DVec3,
     /// Light space to world space: the inverse of the struct's own rotation as rounded to f32.
@@ -52,10 +56,15 @@ pub struct Point {
     pub normal: Option<DVec3>,
 }
 
-/// The frame's triangles to cast rays at.
+/// The frame's triangles to cast rays at, with the holes of their masks.
 pub fn truth_of(frame: &Frame) -> Truth {
     let positions: Vec<DVec3> = frame.vertices.iter().map(|v| v.position.as_dvec3()).collect();
-    Truth::new(&positions, frame.triangles.iter().copied())
+    let truth = Truth::new(&positions, frame.triangles.iter().copied());
+    if frame.masks.is_empty() {
+        return truth;
+    }
+    let frame = frame.clone();
+    truth.with_opacity(move |triangle, weights| frame.opaque(triangle, weights))
 }
 
 impl<'a> Bench<'a> {
@@ -65,7 +74,8 @@ impl<'a> Bench<'a> {
         let [right, up, forward] = [light.right, light.up, light.forward].map(world);
         let to_light = DMat3::from_cols(right, up, forward).transpose();
         let to_world = to_light.inverse();
-        Self { frame, maps, truth, light, origin: world(light.position), to_world }
+        let projection = frame.settings.method.projection();
+        Self { frame, maps, truth, light, projection, origin: world(light.position), to_world }
     }
 
     /// A world position in light space.
@@ -73,30 +83,47 @@ impl<'a> Bench<'a> {
         dpsm_to_light(Vec3::new(position.x, position.y, position.z), self.light)
     }
 
-    /// The world direction of disk coordinates in a hemisphere's map, of about unit length.
-    pub fn direction(&self, uv: Vec2<f64>, hemisphere: u32) -> DVec3 {
-        self.to_world * world(dpsm_flip(dpsm_unproject(uv), hemisphere))
+    /// The world direction of a map's place: of about unit length on a disk, of length 1 along the
+    /// axis on a face.
+    pub fn direction(&self, uv: Vec2<f64>, map: u32) -> DVec3 {
+        self.to_world * world(self.projection.direction(uv, map))
     }
 
-    /// The first hit of a texel's direction between the clipping spheres: its distance.
-    pub fn first_distance(&self, uv: Vec2<f64>, hemisphere: u32) -> Option<f64> {
-        let ray = Ray {
-            near: self.light.near,
-            far: self.light.far,
-            ..Ray::new(self.origin, self.direction(uv, hemisphere))
+    /// The first hit of a texel's direction between near and far: its distance.
+    pub fn first_distance(&self, uv: Vec2<f64>, map: u32) -> Option<f64> {
+        self.first_hit(self.direction(uv, map)).map(|hit| hit.distance)
+    }
+
+    /// The first hit along a world direction between near and far.
+    fn first_hit(&self, direction: DVec3) -> Option<Hit> {
+        let [near, far] = self.clip(direction);
+        self.truth.first_hit(&Ray { near, far, ..Ray::new(self.origin, direction) })
+    }
+
+    /// Where near and far clip along a world direction: spheres, or a cube's planes.
+    pub fn clip(&self, direction: DVec3) -> [f64; 2] {
+        let stretch = match self.projection {
+            Projection::Paraboloid => 1.0,
+            Projection::Cube => self.projection.stretch(self.to_light(self.origin + direction)),
         };
-        self.truth.first_hit(&ray).map(|hit| hit.distance)
+        [self.light.near * stretch, self.light.far * stretch]
     }
 
-    /// True where nothing between the near sphere and the point keeps the light from it.
+    /// What keeps the light from a point, farther than near from the light.
+    pub fn occluder(&self, point: &Point) -> Option<Hit> {
+        let [near, _] = self.clip(point.world - self.origin);
+        self.truth.occluder(self.origin, point.world, point.triangle, near)
+    }
+
+    /// True where nothing between near and the point keeps the light from it.
     pub fn sees(&self, point: &Point) -> bool {
-        self.truth.sees(self.origin, point.world, point.triangle, self.light.near)
+        self.occluder(point).is_none()
     }
 
     /// True where a direction of the light reaches the plane of a receiver, or `None` where it
     /// misses the plane. A receiver without a normal is taken as a sphere around the light.
-    pub fn reaches(&self, point: &Point, uv: Vec2<f64>, hemisphere: u32) -> Option<bool> {
-        let direction = self.direction(uv, hemisphere).normalize();
+    pub fn reaches(&self, point: &Point, uv: Vec2<f64>, map: u32) -> Option<bool> {
+        let direction = self.direction(uv, map).normalize();
         let to_point = point.world - self.origin;
         let distance = match point.normal {
             Some(normal) => normal.dot(to_point) / normal.dot(direction),
@@ -107,21 +134,32 @@ impl<'a> Bench<'a> {
         ahead.then(|| self.sees(&on_plane))
     }
 
-    /// The width of a texel on the disk.
+    /// The width of a texel in a map's places.
     pub fn texel(&self) -> f64 {
-        2.0 * (1.0 + self.light.guard) / self.light.size
+        texel(self.light)
     }
 
-    /// The hemisphere of a point and its disk coordinates there.
+    /// The map that holds a point, hemisphere or face, and the place in it.
     pub fn place(&self, point: &Point) -> (u32, Vec2<f64>) {
-        let p = self.to_light(point.world);
-        let hemisphere = crate::scalar::hemisphere::dpsm_hemisphere(p);
-        (hemisphere, dpsm_project(dpsm_flip(p, hemisphere)))
+        self.projection.place(self.to_light(point.world))
     }
 
-    /// The angle that a texel spans at disk coordinates.
+    /// The angle that a texel spans at a place.
     pub fn pitch(&self, uv: Vec2<f64>) -> f64 {
-        dpsm_texel_pitch(uv, self.light.size, self.light.guard)
+        self.projection.pitch(uv, self.light)
+    }
+
+    /// The distance of a depth stored at a place.
+    pub fn distance(&self, depth: f64, uv: Vec2<f64>) -> f64 {
+        self.projection.distance(depth, uv, self.light)
+    }
+
+    /// The largest change of the distance at a place where its depth is off by up to `off`: depth
+    /// stays in [0, 1], and the distance grows with it.
+    pub fn spread(&self, depth: f64, off: f64, uv: Vec2<f64>) -> f64 {
+        let at = self.distance(depth, uv);
+        let change = |depth: f64| (self.distance(depth, uv) - at).abs();
+        change((depth - off).max(0.0)).max(change((depth + off).min(1.0)))
     }
 
     /// The points that the camera sees through `count` random places of the image, `seed` the same
@@ -138,19 +176,17 @@ impl<'a> Bench<'a> {
             })
             .collect();
         let hits = self.truth.first_hits(&rays).into_iter().flatten();
-        let point =
-            |hit: crate::truth::Hit| Some(self.on_triangle(hit.triangle, self.truth.point(&hit)?));
+        let point = |hit: Hit| Some(self.on_triangle(hit.triangle, self.truth.point(&hit)?));
         hits.filter_map(point).collect()
     }
 
-    /// `count` points scattered evenly over the area of all triangles.
+    /// `count` points scattered evenly over the area of all triangles, less those in a hole.
     pub fn points_scattered(&self, count: usize, seed: u64) -> Vec<Point> {
         let mut rng = Rng::with_seed(seed);
         let mut total = 0.0;
         let areas: Vec<f64> = (0..self.frame.triangles.len() as u32)
             .map(|triangle| {
-                let [a, b, c] = self.corners(triangle);
-                total += (b - a).cross(c - a).length();
+                total += self.normal(triangle).length();
                 total
             })
             .collect();
@@ -162,9 +198,10 @@ impl<'a> Bench<'a> {
             if s + t > 1.0 {
                 (s, t) = (1.0 - s, 1.0 - t);
             }
-            self.on_triangle(triangle, a + (b - a) * s + (c - a) * t)
+            let opaque = self.frame.opaque(triangle, [1.0 - s - t, s, t]);
+            opaque.then(|| self.on_triangle(triangle, a + (b - a) * s + (c - a) * t))
         };
-        if areas.is_empty() { Vec::new() } else { (0..count).map(scatter).collect() }
+        if areas.is_empty() { Vec::new() } else { (0..count).filter_map(scatter).collect() }
     }
 
     /// A point given by its coordinates: its triangle is the one that the light's ray through it
@@ -194,9 +231,14 @@ impl<'a> Bench<'a> {
     }
 
     fn on_triangle(&self, triangle: u32, position: DVec3) -> Point {
-        let [a, b, c] = self.corners(triangle);
-        let normal = (b - a).cross(c - a).try_normalize();
+        let normal = self.normal(triangle).try_normalize();
         Point { world: position, triangle: Some(triangle), normal }
+    }
+
+    /// A triangle's normal, as long as twice its area.
+    fn normal(&self, triangle: u32) -> DVec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a)
     }
 }
 

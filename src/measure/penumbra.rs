@@ -7,10 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, Point};
-use crate::scalar::hemisphere::{dpsm_flip, dpsm_hemisphere};
 use crate::scalar::maps::Sampling;
-use crate::scalar::paraboloid::dpsm_project;
-use crate::scalar::visibility::dpsm_visibility;
 
 /// Error of a filtered visibility against the true coverage of the kernel's cone.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -45,10 +42,8 @@ pub fn coverage(bench: &Bench<'_>, point: &Point, half_angle: f64) -> f64 {
         let (sin, cos) = (golden * f64::from(k)).sin_cos();
         let direction: DVec3 = axis * cosine + (side * cos + other * sin) * sine;
         let p = bench.to_light(bench.origin + direction);
-        let hemisphere = dpsm_hemisphere(p);
-        let flipped = dpsm_flip(p, hemisphere);
-        let uv = dpsm_project(flipped);
-        if let Some(reaches) = bench.reaches(point, uv, hemisphere) {
+        let (map, uv) = bench.projection.place(p);
+        if let Some(reaches) = bench.reaches(point, uv, map) {
             taken += 1;
             lit += u32::from(reaches);
         }
@@ -73,7 +68,7 @@ pub fn penumbra_error(
         .filter_map(|point| {
             let p = bench.to_light(point.world).narrow();
             let (hemisphere, uv) = bench.place(point);
-            let visibility = dpsm_visibility(bench.maps, p, bench.frame.light, bench.frame.bias);
+            let visibility = bench.frame.visibility(bench.maps, p);
             let truth = coverage(bench, point, cone_texels * bench.pitch(uv));
             point_done();
             (hemisphere < bench.frame.light.hemispheres)

@@ -6,9 +6,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, Point, percentile};
-use crate::scalar::depth::dpsm_distance;
 use crate::scalar::float::Vec2;
-use crate::scalar::visibility::{dpsm_lookup, dpsm_visibility};
+use crate::scalar::maps::Sampling;
+use crate::scalar::paraboloid::dpsm_texture_to_disk;
 
 /// Rays along a side of a footprint, its corners included.
 const FOOTPRINT_RAYS: i32 = 5;
@@ -30,14 +30,16 @@ const SEAM_TEXELS: f64 = 5.0;
 pub struct Judgement {
     /// Visibility by the map, in [0, 1].
     pub visibility: f32,
-    /// The point's hemisphere.
+    /// The point's map: hemisphere or face.
     pub hemisphere: u32,
-    /// Disk coordinates in that hemisphere's map.
+    /// Place in that map: disk coordinates, or the face's plane at distance 1.
     pub uv: [f64; 2],
     /// Stored distance of the texel that holds the point; infinite where it is empty.
     pub stored: f64,
     /// The point's own distance.
     pub own: f64,
+    /// True where the point lies between near and far.
+    pub inside: bool,
     /// True where ray casting sees the light.
     pub lit: bool,
     /// True where the rays over the footprint do not all agree.
@@ -50,7 +52,7 @@ pub struct Judgement {
 pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
     let p = bench.to_light(point.world);
     let light = bench.frame.light;
-    let at = dpsm_lookup(p.narrow(), light);
+    let at = bench.projection.lookup(p.narrow(), light);
     let (hemisphere, uv) = bench.place(point);
     let size = f64::from(bench.maps.size);
     let texel = |c: f32| (f64::from(c) * size).floor();
@@ -60,45 +62,48 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
         false => 1.0,
     };
     let stored = match depth < 1.0 {
-        true => dpsm_distance(f64::from(depth), bench.light.near, bench.light.far),
+        true => bench.distance(f64::from(depth), texel_place(bench, [x + 0.5, y + 0.5])),
         false => f64::INFINITY,
     };
     let unmapped = !at.mapped; // dark by definition, and so in truth
-    let occluder =
-        bench.truth.occluder(bench.origin, point.world, point.triangle, bench.light.near);
+    let occluder = bench.occluder(point);
     let own = p.length();
+    let [near, far] = bench.clip(point.world - bench.origin);
     Judgement {
-        visibility: dpsm_visibility(bench.maps, p.narrow(), light, bench.frame.bias),
+        visibility: bench.frame.visibility(bench.maps, p.narrow()),
         hemisphere,
         uv: [uv.x, uv.y],
         stored,
         own,
+        inside: (near..=far).contains(&own),
         lit: occluder.is_none() && !unmapped,
         edge: !unmapped && is_edge(bench, point, [x, y], at.hemisphere),
         gap: occluder.map_or(f64::INFINITY, |hit| own - hit.distance),
     }
 }
 
+/// The place of coordinates counted in texels.
+fn texel_place(bench: &Bench<'_>, [x, y]: [f64; 2]) -> Vec2<f64> {
+    dpsm_texture_to_disk(Vec2::new(x, y) / bench.light.size, bench.light.guard)
+}
+
 /// True where the rays over the texels that a lookup reads do not all agree, or miss the plane.
 fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) -> bool {
     let reach = match bench.maps.sampling {
-        crate::scalar::maps::Sampling::Nearest => 0.0,
-        crate::scalar::maps::Sampling::Linear => 1.0,
+        Sampling::Nearest => 0.0,
+        Sampling::Linear => 1.0,
     };
     let sees = bench.sees(point);
     let steps = f64::from(FOOTPRINT_RAYS - 1) / (1.0 + 2.0 * reach);
     (0..FOOTPRINT_RAYS * FOOTPRINT_RAYS).any(|i| {
         let offset = |k: i32| f64::from(k) / steps - reach;
-        let st = Vec2::new(x + offset(i % FOOTPRINT_RAYS), y + offset(i / FOOTPRINT_RAYS));
-        let uv = crate::scalar::paraboloid::dpsm_texture_to_disk(
-            st / bench.light.size,
-            bench.light.guard,
-        );
+        let corner = [x + offset(i % FOOTPRINT_RAYS), y + offset(i / FOOTPRINT_RAYS)];
+        let uv = texel_place(bench, corner);
         bench.reaches(point, uv, hemisphere).is_none_or(|reaches| reaches != sees)
     })
 }
 
-/// Distance on the disk from a point to the nearest place where its plane's light changes, in
+/// Distance in the map from a point to the nearest place where its plane's light changes, in
 /// texels; `None` beyond the widest ring.
 fn edge_distance(bench: &Bench<'_>, point: &Point) -> Option<f64> {
     let (hemisphere, uv) = bench.place(point);
@@ -137,7 +142,7 @@ fn edge_distance(bench: &Bench<'_>, point: &Point) -> Option<f64> {
 pub struct ShadowError {
     /// Points judged.
     pub points: usize,
-    /// Points inside the near or beyond the far sphere: compared at the sphere.
+    /// Points inside near or beyond far: compared there.
     pub outside_spheres: usize,
     /// Points in the hemisphere that a hemispherical light has no map for: dark by definition, in
     /// the map as in truth.
@@ -163,7 +168,7 @@ pub struct ShadowError {
     pub edge_texels_largest: f64,
     /// Their distance from it in radians: largest.
     pub edge_radians_largest: f64,
-    /// Points within five texels of the seam.
+    /// Points within five texels of the seam between hemispheres, or of a face's edge.
     pub seam_points: usize,
     /// Of those, misclassified.
     pub seam_misclassified: usize,
@@ -198,15 +203,15 @@ pub fn shadow_error(
         })
         .collect();
     let mut error = ShadowError { points: points.len(), ..ShadowError::default() };
-    let (near, far) = (bench.light.near, bench.light.far);
     let mut texels = Vec::new();
     for (judgement, distance) in judged {
-        let r = judgement.uv[0].hypot(judgement.uv[1]);
-        let seam = r >= 1.0 - SEAM_TEXELS * bench.texel();
+        let [u, v] = judgement.uv;
+        let uv = Vec2::new(u, v);
+        let seam = bench.projection.radius(uv) >= 1.0 - SEAM_TEXELS * bench.texel();
         error.seam_points += usize::from(seam);
         error.unmapped += usize::from(judgement.hemisphere >= bench.frame.light.hemispheres);
         error.edge_points += usize::from(judgement.edge);
-        error.outside_spheres += usize::from(!(near..=far).contains(&judgement.own));
+        error.outside_spheres += usize::from(!judgement.inside);
         if (judgement.visibility >= 0.5) == judgement.lit {
             continue;
         }
@@ -230,8 +235,7 @@ pub fn shadow_error(
         }
         if let Some(distance) = distance {
             texels.push(distance);
-            let [u, v] = judgement.uv;
-            let radians = distance * bench.pitch(Vec2::new(u, v));
+            let radians = distance * bench.pitch(uv);
             error.edge_radians_largest = error.edge_radians_largest.max(radians);
         }
     }

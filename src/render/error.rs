@@ -62,10 +62,71 @@ pub enum FrameError {
         /// The vertex.
         value: Vec3,
     },
+    /// A triangle's corner that is not there.
+    #[error(
+        "mesh `{mesh}`: triangle {triangle} has the vertex {index}, but there are {positions}, counted from 0; give it one of those"
+    )]
+    Index {
+        /// The mesh.
+        mesh: String,
+        /// Index in the mesh.
+        triangle: usize,
+        /// The corner's.
+        index: u32,
+        /// Vertices of the mesh.
+        positions: usize,
+    },
+    /// Vertices that are not whole.
+    #[error("mesh `{mesh}` has {found} {what} for {positions} positions; give it as many")]
+    Count {
+        /// The mesh.
+        mesh: String,
+        /// Normals or texture coordinates.
+        what: &'static str,
+        /// How many of them.
+        found: usize,
+        /// Vertices of the mesh.
+        positions: usize,
+    },
+    /// A mask that is no picture.
+    #[error(
+        "mesh `{mesh}`: a mask of {width} x {height} texels has {found} alphas and the cutoff {cutoff}; give each texel one, at least one texel, and a number for the cutoff"
+    )]
+    Mask {
+        /// The mesh.
+        mesh: String,
+        /// Texels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// How many alphas.
+        found: usize,
+        /// The cutoff.
+        cutoff: f32,
+    },
     /// The light's main axis points nowhere.
     #[error("the light's axis {0} has no direction; set --axis to a vector other than 0,0,0")]
     Axis(Vec3),
+    /// Something that the cube method does not have.
+    #[error("the cube method has no {what}; choose {remedy}, or another --method")]
+    Cube {
+        /// What it has not.
+        what: &'static str,
+        /// What it has.
+        remedy: &'static str,
+    },
     /// The camera looks nowhere.
     #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
     Camera(Vec3),
+    /// A level of tessellation whose vertices cannot be counted.
+    #[error(
+        "tessellation level {level} makes {vertices} vertices of a mesh, more than 4294967295; \
+         use a smaller --level"
+    )]
+    Level {
+        /// The level.
+        level: u32,
+        /// Vertices up to the mesh's end.
+        vertices: u64,
+    },
 }

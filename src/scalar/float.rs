@@ -28,6 +28,10 @@ pub trait Float:
     fn max(self, other: Self) -> Self;
     /// The smaller one.
     fn min(self, other: Self) -> Self;
+    /// The largest whole number that is not above.
+    fn floor(self) -> Self;
+    /// The smallest whole number that is not below.
+    fn ceil(self) -> Self;
     /// WGSL's clamp.
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
@@ -54,6 +58,12 @@ macro_rules! float {
             }
             fn min(self, other: Self) -> Self {
                 self.min(other)
+            }
+            fn floor(self) -> Self {
+                self.floor()
+            }
+            fn ceil(self) -> Self {
+                self.ceil()
             }
         }
     };
@@ -84,6 +94,26 @@ macro_rules! vector {
                 Self { $($c: value),+ }
             }
 
+            /// The smaller of each component.
+            pub fn min(self, other: Self) -> Self {
+                Self { $($c: self.$c.min(other.$c)),+ }
+            }
+
+            /// The larger of each component.
+            pub fn max(self, other: Self) -> Self {
+                Self { $($c: self.$c.max(other.$c)),+ }
+            }
+
+            /// Each component's largest whole number that is not above.
+            pub fn floor(self) -> Self {
+                Self { $($c: self.$c.floor()),+ }
+            }
+
+            /// Each component's smallest whole number that is not below.
+            pub fn ceil(self) -> Self {
+                Self { $($c: self.$c.ceil()),+ }
+            }
+
             /// WGSL's dot product, summed from left to right.
             pub fn dot(self, other: Self) -> T {
                 let products = [$(self.$c * other.$c),+];
@@ -111,6 +141,13 @@ macro_rules! vector {
         }
 
         vector!(@each $name { $($c),+ } Add add +, Sub sub -, Mul mul *);
+
+        impl<T: Float> Neg for $name<T> {
+            type Output = Self;
+            fn neg(self) -> Self {
+                Self { $($c: -self.$c),+ }
+            }
+        }
 
         impl<T: Float> Mul<T> for $name<T> {
             type Output = Self;
@@ -172,9 +209,25 @@ impl<T: Float> Vec3<T> {
     pub fn xy(self) -> Vec2<T> {
         Vec2::new(self.x, self.y)
     }
+
+    /// WGSL's cross product.
+    pub fn cross(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        Self::new(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+    }
+
+    /// The vec4 with w behind.
+    pub fn extend(self, w: T) -> Vec4<T> {
+        Vec4::new(self.x, self.y, self.z, w)
+    }
 }
 
 impl<T: Float> Vec4<T> {
+    /// The swizzle `xyz`.
+    pub fn xyz(self) -> Vec3<T> {
+        Vec3::new(self.x, self.y, self.z)
+    }
+
     /// The swizzle `xy`.
     pub fn xy(self) -> Vec2<T> {
         Vec2::new(self.x, self.y)

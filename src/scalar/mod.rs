@@ -10,7 +10,10 @@
 //! ```
 
 pub mod caster;
+pub mod classify;
+pub mod cube;
 pub mod depth;
+pub mod edge;
 pub mod float;
 pub mod hemisphere;
 pub mod light;
@@ -18,4 +21,6 @@ pub mod maps;
 pub mod paraboloid;
 pub mod ports;
 pub mod shade;
+pub mod tessellate;
+pub mod triangle;
 pub mod visibility;

@@ -8,11 +8,16 @@ pub const DPSM_SMALLEST: f64 = 1.0 / (1u64 << 51) as f64;
 
 /// Projects a light-space point to the front map's disk coordinates.
 pub fn dpsm_project<T: Float>(p: Vec3<T>) -> Vec2<T> {
-    let own = p.xy() / (p.length() + p.z.abs()).max(T::lit(DPSM_SMALLEST));
+    let own = dpsm_project_own(p);
     if p.z >= T::lit(0.0) {
         return own;
     }
     dpsm_invert(own)
+}
+
+/// Projects a light-space point to its own hemisphere's disk coordinates, r <= 1.
+pub fn dpsm_project_own<T: Float>(p: Vec3<T>) -> Vec2<T> {
+    p.xy() / (p.length() + p.z.abs()).max(T::lit(DPSM_SMALLEST))
 }
 
 /// The unit direction of front-map disk coordinates: (2u, 2v, 1 - r^2) / (1 + r^2).
@@ -25,6 +30,11 @@ pub fn dpsm_unproject<T: Float>(uv: Vec2<T>) -> Vec3<T> {
 /// The angle in radians that a texel of an N x N map (size = N) spans at disk coordinates uv.
 pub fn dpsm_texel_pitch<T: Float>(uv: Vec2<T>, size: T, guard: T) -> T {
     T::lit(4.0) * (T::lit(1.0) + guard) / (size + size * uv.dot(uv))
+}
+
+/// The width of a texel of an N x N map (size = N) on the disk.
+pub fn dpsm_texel_width<T: Float>(size: T, guard: T) -> T {
+    T::lit(2.0) * (T::lit(1.0) + guard) / size
 }
 
 /// The solid angle in steradians of a texel at disk coordinates uv: the square of its pitch.

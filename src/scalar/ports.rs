@@ -1,12 +1,17 @@
 //! The ports by name, callable on flat words, as the evaluator and `dpsm eval` need them.
 
 use super::caster::*;
+use super::classify::*;
+use super::cube::*;
 use super::depth::*;
+use super::edge::*;
 use super::float::{Float, Vec2, Vec3, Vec4};
 use super::hemisphere::*;
 use super::light::*;
 use super::paraboloid::*;
 use super::shade::*;
+use super::tessellate::*;
+use super::triangle::*;
 use super::visibility::*;
 
 /// One 32-bit component of an argument or a result.
@@ -56,6 +61,17 @@ impl<T> Flat<T> for u32 {
     }
 }
 
+impl<T, V: Flat<T>> Flat<T> for [V; 3] {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        Some([V::read(words)?, V::read(words)?, V::read(words)?])
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        for part in self {
+            part.write(words);
+        }
+    }
+}
+
 impl<T> Flat<T> for bool {
     fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
         u32::read(words).map(|value| value != 0)
@@ -89,6 +105,18 @@ flat! {
     DpsmCasterFragment { depth, keep }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
+    DpsmTriangle { first, second, third, plane }
+    DpsmHull { a, b, c }
+    DpsmPart { a, b, c }
+}
+
+impl<T> Flat<T> for DpsmClass {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        Some(Self { kind: Flat::read(words)?, hemispheres: Flat::read(words)? })
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        (self.kind, self.hemispheres).write(words);
+    }
 }
 
 macro_rules! tuple {
@@ -109,6 +137,8 @@ tuple!(a: A);
 tuple!(a: A, b: B);
 tuple!(a: A, b: B, c: C);
 tuple!(a: A, b: B, c: C, d: D);
+tuple!(a: A, b: B, c: C, d: D, e: E);
+tuple!(a: A, b: B, c: C, d: D, e: E, f: G);
 
 /// A function of flat arguments.
 trait Callable<T, Arguments> {
@@ -138,16 +168,28 @@ callable!(a: A);
 callable!(a: A, b: B);
 callable!(a: A, b: B, c: C);
 callable!(a: A, b: B, c: C, d: D);
+callable!(a: A, b: B, c: C, d: D, e: E);
+callable!(a: A, b: B, c: C, d: D, e: E, f: G);
+
+/// A port as a function on T; `integers` marks one that has no float to be generic over.
+macro_rules! port {
+    ($function:ident) => {
+        $function::<T>
+    };
+    ($function:ident integers) => {
+        $function
+    };
+}
 
 macro_rules! ports {
-    ($($module:ident { $($function:ident),+ $(,)? })+) => {
+    ($($module:ident { $($function:ident $($integers:ident)?),+ $(,)? })+) => {
         /// The functions that have a port here: module and name, in the modules' order.
         pub const PORTS: &[(&str, &str)] = &[$($((stringify!($module), stringify!($function)),)+)+];
 
         /// Calls a port on flat words; `None` for an unknown name or words that do not fit.
         pub fn call<T: Float + Flat<T>>(function: &str, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
             match function {
-                $($( stringify!($function) => $function::<T>.apply(words), )+)+
+                $($( stringify!($function) => port!($function $($integers)?).apply(words), )+)+
                 _ => None,
             }
         }
@@ -156,14 +198,35 @@ macro_rules! ports {
 ports! {
     hemisphere { dpsm_to_light, dpsm_hemisphere, dpsm_flip, dpsm_invert }
     paraboloid {
-        dpsm_project, dpsm_unproject, dpsm_texel_pitch, dpsm_texel_solid_angle,
-        dpsm_disk_to_texture, dpsm_texture_to_disk,
+        dpsm_project, dpsm_project_own, dpsm_unproject, dpsm_texel_pitch, dpsm_texel_width,
+        dpsm_texel_solid_angle, dpsm_disk_to_texture, dpsm_texture_to_disk,
     }
     light { dpsm_light_layer, dpsm_light_coordinates }
     depth { dpsm_depth, dpsm_distance, dpsm_within, dpsm_receiver_depth }
     caster {
         dpsm_caster_border, dpsm_caster_vertex, dpsm_caster_keep, dpsm_caster_fragment,
     }
+    tessellate {
+        dpsm_tessellate_weights integers, dpsm_tessellate_point, dpsm_tessellate_level,
+    }
+    edge {
+        dpsm_edge_largest, dpsm_edge_unit, dpsm_edge_ordered, dpsm_edge_normal,
+        dpsm_edge_sagitta, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_line,
+    }
+    triangle {
+        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_covers, dpsm_triangle_distance,
+        dpsm_triangle_disk, dpsm_triangle_fragment, dpsm_triangle_weights, dpsm_triangle_hull,
+        dpsm_triangle_tip, dpsm_triangle_needle,
+    }
+    classify {
+        dpsm_classify_usable, dpsm_classify, dpsm_classify_flat_error, dpsm_classify_distance,
+        dpsm_classify_misses, dpsm_classify_part, dpsm_classify_half, dpsm_classify_kind,
+    }
     visibility { dpsm_lookup, dpsm_receiver_vertex }
+    cube {
+        dpsm_cube_face, dpsm_cube_view, dpsm_cube_unview, dpsm_cube_guard, dpsm_cube_vertex,
+        dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_direction,
+        dpsm_cube_distance, dpsm_cube_outside,
+    }
     shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight }
 }

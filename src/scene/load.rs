@@ -1,5 +1,6 @@
 //! Files: which reader, and the repairs that every format's meshes go through.
 
+mod alpha;
 mod gltf;
 mod obj;
 mod primitive;
@@ -8,9 +9,9 @@ use std::collections::{BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::{Mesh, Scene, SceneError};
+use super::{Mask, Mesh, Scene, SceneError};
 
 /// Reads a `.obj`, `.gltf` or `.glb` file.
 pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
@@ -65,11 +66,13 @@ fn albedo(color: [f32; 3]) -> Vec3 {
     Vec3::from(color.map(usable))
 }
 
-/// A triangle's corner: indices of its position and normal, counted from zero, unchecked.
+/// A triangle's corner: indices of its position, normal and texture coordinates, counted from zero,
+/// unchecked.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 struct Corner {
     position: u32,
     normal: Option<u32>,
+    texcoord: Option<u32>,
 }
 
 type Triangle = [Corner; 3];
@@ -79,8 +82,10 @@ struct Draft<'a> {
     name: String,
     positions: &'a [Vec3],
     normals: &'a [Vec3],
+    texcoords: &'a [Vec2],
     triangles: Vec<Triangle>,
     albedo: Vec3,
+    mask: Option<Mask>,
 }
 
 /// Vertices that cannot be used, and how many triangles they cost.
@@ -101,9 +106,11 @@ impl Draft<'_> {
             normals: Vec::new(),
             triangles: Vec::with_capacity(self.triangles.len()),
             albedo: self.albedo,
+            texcoords: Vec::new(),
+            mask: self.mask,
         };
         let (mut out_of_range, mut non_finite) = (Dropped::default(), Dropped::default());
-        let mut replaced_normals = 0;
+        let (mut replaced_normals, mut unusable_texcoords) = (0, 0);
         let mut known = HashMap::new();
         for corners in self.triangles {
             let points = corners.map(|corner| at(self.positions, corner.position));
@@ -116,19 +123,25 @@ impl Draft<'_> {
                 non_finite.add(corners, bad);
                 continue;
             }
-            let mut add = |position: Vec3, normal: Vec3| {
+            let mut add = |corner: Corner, position: Vec3, normal: Vec3| {
                 mesh.positions.push(position);
                 mesh.normals.push(normal);
+                if mesh.mask.is_some() {
+                    let texcoord = corner.texcoord.and_then(|i| at(self.texcoords, i));
+                    let texcoord = texcoord.unwrap_or(Vec2::NAN);
+                    unusable_texcoords += u32::from(!texcoord.is_finite());
+                    mesh.texcoords.push(texcoord);
+                }
                 mesh.positions.len() as u32 - 1
             };
             let triangle = [(corners[0], a), (corners[1], b), (corners[2], c)];
             mesh.triangles.push(triangle.map(|(corner, position)| {
                 let given = corner.normal.map(|i| at(self.normals, i).and_then(unit));
                 if let Some(Some(normal)) = given {
-                    *known.entry(corner).or_insert_with(|| add(position, normal))
+                    *known.entry(corner).or_insert_with(|| add(corner, position, normal))
                 } else {
                     replaced_normals += u32::from(given.is_some());
-                    add(position, face_normal(a, b, c))
+                    add(corner, position, face_normal(a, b, c))
                 }
             }));
         }
@@ -153,6 +166,10 @@ impl Draft<'_> {
         }
         if replaced_normals > 0 {
             warn(format!("{replaced_normals} corners have no usable normal and got their face's"));
+        }
+        if unusable_texcoords > 0 {
+            let what = "vertices have no usable texture coordinates: opaque around them";
+            warn(format!("{unusable_texcoords} {what}"));
         }
         (!mesh.triangles.is_empty()).then_some(mesh)
     }

@@ -14,18 +14,20 @@
 //! ```
 
 mod load;
+mod mask;
 mod procedural;
 mod shapes;
 mod view;
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-pub use procedural::BUILT_IN;
+pub use mask::Mask;
+pub use procedural::{BUILT_IN, crowd, dozen};
 
 /// A triangle mesh in world space.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// The file's name for it, or a made-up one; not necessarily unique.
     pub name: String,
@@ -37,6 +39,21 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Diffuse reflectance, linear RGB, each component in [0, 1].
     pub albedo: Vec3,
+    /// Where `mask` is read, one for each position; empty without a mask.
+    pub texcoords: Vec<Vec2>,
+    /// Where the mesh has holes; `None` for an opaque one.
+    pub mask: Option<Mask>,
+}
+
+impl Mesh {
+    /// False where a triangle's point, given by its corners' weights, is a hole of the mask.
+    pub fn opaque(&self, triangle: usize, weights: [f64; 3]) -> bool {
+        let Some((mask, corners)) = self.mask.as_ref().zip(self.triangles.get(triangle)) else {
+            return true;
+        };
+        let texcoord = |i: u32| self.texcoords.get(i as usize).copied().unwrap_or(Vec2::NAN);
+        mask.opaque_at(corners.map(texcoord), weights)
+    }
 }
 
 /// A point light.
@@ -120,10 +137,11 @@ impl Scene {
         self.meshes.iter().map(|mesh| mesh.triangles.len()).sum()
     }
 
-    /// The corners of every triangle, mesh after mesh.
+    /// The corners of every triangle, mesh after mesh; NaN where an index is out of range.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         self.meshes.iter().flat_map(|mesh| {
-            mesh.triangles.iter().map(|corners| corners.map(|i| mesh.positions[i as usize]))
+            let corner = |i: u32| mesh.positions.get(i as usize).copied().unwrap_or(Vec3::NAN);
+            mesh.triangles.iter().map(move |corners| corners.map(corner))
         })
     }
 }
@@ -180,7 +198,8 @@ fn nearest_built_in(typed: &str) -> Option<&'static str> {
         names()
             .map(|name| (strsim::damerau_levenshtein(name, &typed), name))
             .min()
-            .filter(|(errors, _)| *errors <= MAX_TYPING_ERRORS)
+            // Of a short name, half the letters at least must be right.
+            .filter(|(errors, name)| *errors <= MAX_TYPING_ERRORS.min(name.len() / 2))
             .map(|(_, name)| name)
     })
 }
@@ -214,6 +233,10 @@ pub enum SceneError {
         "`{path}` needs the buffer `{uri}`: {what}; put it where the file expects it, or export a .glb, which holds its buffers"
     )]
     Buffer { path: PathBuf, uri: String, what: String },
+    #[error(
+        "`{path}` needs the image `{image}` for the mask of mesh `{mesh}`: {what}; put a PNG or JPEG where the file expects it, or export a .glb, which holds its images"
+    )]
+    Image { path: PathBuf, image: String, mesh: String, what: String },
     #[error(
         "`{path}` requires the glTF extension `{extension}`, which is not supported; export it without"
     )]

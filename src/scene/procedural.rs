@@ -1,12 +1,18 @@
 //! The built-in scenes.
 
-use glam::{Quat, Vec3, vec3};
+mod crowd;
+mod fence;
+mod room;
 
-use super::shapes::{ball, cuboid, prism, quads, revolve, ring, rod};
+use glam::{Vec3, vec3};
+
+use super::shapes::{prism, quads};
 use super::{Camera, Light, Mesh, Options, Scene, SceneError};
 
+pub use crowd::{crowd, dozen};
+
 /// Name and one line about each scene that [`open`](super::open) builds.
-pub const BUILT_IN: [(&str, &str); 3] = [
+pub const BUILT_IN: [(&str, &str); 7] = [
     (
         "brabec-room",
         "closed room with solids, omnidirectional light in its middle (Brabec 2002, figure 3)",
@@ -16,6 +22,13 @@ pub const BUILT_IN: [(&str, &str); 3] = [
         "the same room, hemispherical light under the ceiling (Brabec 2002, figure 4)",
     ),
     ("cornell", "the Cornell box, omnidirectional light under its ceiling"),
+    (
+        "seam-box",
+        "closed room, omnidirectional light, a box across the plane between its hemispheres",
+    ),
+    ("cage", "closed room, omnidirectional light in a cage of thin bars"),
+    ("fence", "closed room, omnidirectional light between alpha-masked lattice and leaves"),
+    ("crowd", "closed room of large triangles, 40,000 small ones of spheres and boxes in it"),
 ];
 
 /// `name` is one of [`BUILT_IN`].
@@ -23,84 +36,41 @@ pub(super) fn build(name: &str, walls: u32) -> Result<Scene, SceneError> {
     if !(1..=Options::MAX_WALLS).contains(&walls) {
         return Err(SceneError::Walls { walls });
     }
-    let (meshes, position, axis, camera) = match name {
-        "cornell" => (cornell(walls), CORNELL_LIGHT, None, cornell_camera()),
+    let middle = (room::MIN + room::MAX) / 2.0;
+    Ok(match name {
+        "cornell" => scene(name, cornell(walls), CORNELL_LIGHT, None, cornell_camera()),
         "brabec-ceiling" => {
-            let under_ceiling = vec3(0.0, ROOM_MAX.y - 0.1, 0.0);
-            (room(walls), under_ceiling, Some(Vec3::NEG_Y), room_camera())
+            let under_ceiling = middle.with_y(room::MAX.y - 0.1);
+            let axis = Some(Vec3::NEG_Y);
+            scene(name, room::solids(walls), under_ceiling, axis, room::camera())
         }
         _ => {
-            let middle = (ROOM_MIN + ROOM_MAX) / 2.0;
-            (room(walls), middle, None, room_camera())
+            let meshes = match name {
+                "seam-box" => room::seam_box(walls),
+                "cage" => room::cage(walls),
+                "fence" => fence::fence(walls),
+                "crowd" => crowd::meshes(crowd::BUILT_IN, walls),
+                _ => room::solids(walls),
+            };
+            scene(name, meshes, middle, None, room::camera())
         }
-    };
-    Ok(Scene {
+    })
+}
+
+fn scene(
+    name: &str,
+    meshes: Vec<Mesh>,
+    position: Vec3,
+    axis: Option<Vec3>,
+    camera: Camera,
+) -> Scene {
+    Scene {
         name: name.into(),
         meshes,
         lights: vec![Light { position, axis, color: Vec3::ONE }],
         camera: Some(camera),
         warnings: Vec::new(),
-    })
-}
-
-// A cube: with 8 x 8 quads a wall's quad nearest to the light is a quarter as wide as it is far.
-const ROOM_MIN: Vec3 = vec3(-2.0, 0.0, -2.0);
-const ROOM_MAX: Vec3 = vec3(2.0, 4.0, 2.0);
-
-/// In the +x +z corner: shows the floor, the -x and -z walls and the objects before them.
-fn room_camera() -> Camera {
-    Camera {
-        eye: vec3(1.9, 3.0, 1.9),
-        target: vec3(-0.4, 1.5, -0.5),
-        up: Vec3::Y,
-        vertical_fov: 82f32.to_radians(),
     }
-}
-
-/// A closed room, its inside visible, with objects in all directions from its middle.
-fn room(walls: u32) -> Vec<Mesh> {
-    let (min, max) = (ROOM_MIN, ROOM_MAX);
-    let base = [(min.x, min.z), (min.x, max.z), (max.x, max.z), (max.x, min.z)];
-    let faces = prism(base.map(|(x, z)| vec3(x, min.y, z)), max.y - min.y);
-    let plaster = vec3(0.75, 0.73, 0.68);
-    let inside = [
-        ("ceiling", vec3(0.8, 0.8, 0.8)),
-        ("floor", vec3(0.55, 0.45, 0.35)),
-        ("wall -x", vec3(0.45, 0.55, 0.7)),
-        ("wall +z", plaster),
-        ("wall +x", plaster),
-        ("wall -z", plaster),
-    ];
-    let mut meshes: Vec<Mesh> = inside
-        .into_iter()
-        .zip(faces)
-        .map(|((name, albedo), [a, b, c, d])| quads(name, albedo, &[[d, c, b, a]], walls))
-        .collect();
-
-    let upright = Quat::IDENTITY;
-    // Seen neither edge-on nor face-on, by camera and light alike.
-    let tilted = Quat::from_rotation_arc(Vec3::Y, vec3(0.6, -0.3, 0.74).normalize());
-    let red = vec3(0.7, 0.2, 0.15);
-    let green = vec3(0.25, 0.6, 0.3);
-    let blue = vec3(0.2, 0.35, 0.7);
-    let yellow = vec3(0.75, 0.65, 0.2);
-    let white = vec3(0.75, 0.75, 0.75);
-    // Each solid in a fine and a coarse tessellation. Heights put the lowest point on the floor.
-    meshes.extend([
-        revolve("sphere, fine", red, 64, &ball(0.45, 32)).placed(upright, vec3(-0.7, 0.45, -1.2)),
-        revolve("sphere, coarse", yellow, 10, &ball(0.35, 6)).placed(upright, vec3(0.4, 0.35, 0.9)),
-        revolve("column, fine", white, 48, &rod(0.15, 4.0)).placed(upright, vec3(-1.7, 0.0, -1.6)),
-        revolve("drum, coarse", green, 8, &rod(0.35, 0.7)).placed(upright, vec3(1.4, 0.0, -0.1)),
-        revolve("torus, fine, hanging", blue, 64, &ring(0.4, 0.13, 24))
-            .placed(tilted, vec3(-0.9, 3.0, 0.4)),
-        revolve("torus, coarse", yellow, 12, &ring(0.35, 0.12, 6))
-            .placed(upright, vec3(-0.9, 0.12, 1.1)),
-        revolve("sphere, coarse, hanging", green, 8, &ball(0.25, 5))
-            .placed(upright, vec3(0.7, 3.1, -0.9)),
-        cuboid("box", blue, vec3(0.8, 0.8, 0.8), 0.5).placed(upright, vec3(0.7, 0.0, -1.3)),
-        cuboid("box, tall", red, vec3(0.45, 1.7, 0.45), 0.3).placed(upright, vec3(-1.5, 0.0, 0.4)),
-    ]);
-    meshes
 }
 
 // The Cornell box: measured geometry and camera as published by Cornell University's Program of

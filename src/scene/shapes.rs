@@ -13,6 +13,12 @@ pub(super) fn prism(base: [Vec3; 4], height: f32) -> [[Vec3; 4]; 6] {
     [[ta, tb, tc, td], [d, c, b, a], [a, b, tb, ta], [b, c, tc, tb], [c, d, td, tc], [d, a, ta, td]]
 }
 
+/// The outward faces of an upright box: top, bottom, -x, +z, +x, -z.
+pub(super) fn faces(min: Vec3, max: Vec3) -> [[Vec3; 4]; 6] {
+    let base = [(min.x, min.z), (min.x, max.z), (max.x, max.z), (max.x, min.z)];
+    prism(base.map(|(x, z)| vec3(x, min.y, z)), max.y - min.y)
+}
+
 /// A box on the plane y = 0, turned about the y axis by `angle` radians.
 pub(super) fn cuboid(name: &str, albedo: Vec3, size: Vec3, angle: f32) -> Mesh {
     let corner = |x: f32, z: f32| vec3(x * size.x / 2.0, 0.0, z * size.z / 2.0);
@@ -116,8 +122,19 @@ pub(super) fn revolve(name: &str, albedo: Vec3, segments: u32, profile: &[Profil
 
 impl Mesh {
     fn named(name: &str, albedo: Vec3) -> Self {
-        let (positions, normals, triangles) = Default::default();
-        Self { name: name.into(), positions, normals, triangles, albedo }
+        Self { name: name.into(), albedo, ..Self::default() }
+    }
+
+    /// Several meshes as one.
+    pub(super) fn joined(name: &str, albedo: Vec3, parts: impl IntoIterator<Item = Self>) -> Self {
+        let mut whole = Self::named(name, albedo);
+        for part in parts {
+            let first = whole.positions.len() as u32;
+            whole.triangles.extend(part.triangles.iter().map(|t| t.map(|i| first + i)));
+            whole.positions.extend(part.positions);
+            whole.normals.extend(part.normals);
+        }
+        whole
     }
 
     /// Rotates, then moves.

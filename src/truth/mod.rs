@@ -19,10 +19,13 @@
 mod sheared;
 mod tree;
 
+use std::fmt;
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::Scene;
+use crate::scene::{Mesh, Scene};
 use sheared::Sheared;
 use tree::Tree;
 
@@ -39,6 +42,20 @@ pub struct Truth {
     /// Of each triangle; of an unusable one, which nothing meets, NaN.
     corners: Vec<[DVec3; 3]>,
     tree: Tree,
+    opacity: Opacity,
+}
+
+/// True where a triangle is opaque at a point given by its corners' weights.
+type Opaque = dyn Fn(u32, [f64; 3]) -> bool + Send + Sync;
+
+/// Without a function all is opaque.
+#[derive(Clone)]
+struct Opacity(Option<Arc<Opaque>>);
+
+impl fmt::Debug for Opacity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.0.is_some() { "some holes" } else { "no holes" })
+    }
 }
 
 /// An open piece of a half-line: the distances strictly between `near` and `far`, as rounded.
@@ -93,7 +110,27 @@ impl Truth {
         let corners: Vec<_> = corners.map(|t| if usable(&t) { t } else { nothing }).collect();
         let hittable = (0..).zip(corners.iter().copied()).filter(|(_, triangle)| usable(triangle));
         let tree = Tree::new(&hittable.collect::<Vec<_>>());
-        Self { corners, tree }
+        Self { corners, tree, opacity: Opacity(None) }
+    }
+
+    /// The same triangles with holes: a ray meets a triangle only where `opaque` of its index and
+    /// the [weights](Hit::weights) of the point is true. Elsewhere it passes through, whatever
+    /// asks.
+    ///
+    /// ```
+    /// # use dpsm::truth::{Ray, Truth};
+    /// # use glam::{DVec3, dvec3};
+    /// let corners = [dvec3(0.0, 0.0, 0.0), dvec3(4.0, 0.0, 0.0), dvec3(0.0, 0.0, 4.0)];
+    /// let near_first = |_, weights: [f64; 3]| weights[0] >= 0.5;
+    /// let truth = Truth::new(&corners, [[0, 1, 2]]).with_opacity(near_first);
+    /// let down = |x| Ray::new(dvec3(x, 1.0, 0.5), DVec3::NEG_Y);
+    /// assert!(truth.first_hit(&down(0.5)).is_some() && truth.first_hit(&down(3.0)).is_none());
+    /// ```
+    pub fn with_opacity(
+        self,
+        opaque: impl Fn(u32, [f64; 3]) -> bool + Send + Sync + 'static,
+    ) -> Self {
+        Self { opacity: Opacity(Some(Arc::new(opaque))), ..self }
     }
 
     /// The first triangle on the ray, from either side; of equally distant ones that with the
@@ -168,14 +205,35 @@ impl Truth {
         let (distance, weights) = sheared.meet(*self.corners.get(triangle as usize)?)?;
         let hit = Hit { distance, triangle, weights };
         let counts = distance > ray.near && distance < ray.far && ray.except != Some(triangle);
-        counts.then_some(hit)
+        let opaque = || self.opacity.0.as_ref().is_none_or(|opaque| opaque(triangle, weights));
+        (counts && opaque()).then_some(hit)
     }
 }
 
-/// Mesh after mesh, as [`Scene::triangles`] counts.
+/// Mesh after mesh, as [`Scene::triangles`] counts, with the holes of their masks.
 impl From<&Scene> for Truth {
     fn from(scene: &Scene) -> Self {
-        Self::of(scene.triangles().map(|corners| corners.map(|corner| corner.as_dvec3())))
+        let truth = Self::of(scene.triangles().map(|t| t.map(|corner| corner.as_dvec3())));
+        let mut end = 0;
+        let starts = scene.meshes.iter().map(|mesh| {
+            let start = end;
+            end += mesh.triangles.len();
+            (start, mesh)
+        });
+        let masked: Vec<(usize, Mesh)> = starts
+            .filter(|(_, mesh)| mesh.mask.is_some())
+            .map(|(start, mesh)| (start, mesh.clone()))
+            .collect();
+        if masked.is_empty() {
+            return truth;
+        }
+        truth.with_opacity(move |triangle, weights| {
+            let triangle = triangle as usize;
+            let after = masked.partition_point(|(start, _)| *start <= triangle);
+            // of an opaque mesh that follows, the triangle is not one of the masked mesh
+            let before = after.checked_sub(1).map(|i| &masked[i]);
+            before.is_none_or(|(start, mesh)| mesh.opaque(triangle - start, weights))
+        })
     }
 }
 

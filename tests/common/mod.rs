@@ -1,6 +1,8 @@
 //! What the numeric tests share: inputs over a function's domain, and bounds in eps.
 #![allow(dead_code)] // each test file uses its part
 
+pub mod exact;
+
 use dpsm::scalar::float::Vec3;
 use dpsm::scalar::light::DpsmLight;
 use fastrand::Rng;
@@ -46,6 +48,11 @@ pub fn unit(rng: &mut Rng) -> Vec3<f32> {
             return Vec3::new(x / length, y / length, z / length).narrow();
         }
     }
+}
+
+/// A point near another: off by 2^low to 2^high of its distance, in any direction.
+pub fn nearby(rng: &mut Rng, p: Vec3<f32>, low: i32, high: i32) -> Vec3<f32> {
+    p + unit(rng) * (p.length() * spread(rng, low, high))
 }
 
 /// A light with a random place, rotation and spheres.

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use dpsm::scene::{Mesh, Options, Scene, SceneError, open};
-use glam::Vec3;
+use dpsm::scene::{Mesh, Options, Scene, SceneError, crowd, dozen, open};
+use glam::{Vec2, Vec3};
 
-use crate::{built_in, corners, enclosures, every_built_in, hit, is_wall, is_watertight, volume};
+use crate::{
+    BUILT_IN, built_in, corners, enclosures, every_built_in, hit, is_wall, is_watertight, volume,
+};
 
 #[test]
 fn walls_are_grids_of_as_many_quads_as_asked() {
@@ -13,7 +15,8 @@ fn walls_are_grids_of_as_many_quads_as_asked() {
         let walls = scene.meshes.iter().filter(|mesh| is_wall(mesh));
         walls.map(|mesh| mesh.triangles.len()).sum()
     };
-    for (name, sides) in [("brabec-room", 6), ("brabec-ceiling", 6), ("cornell", 5)] {
+    for name in BUILT_IN.map(|(name, _)| name) {
+        let sides = if name == "cornell" { 5 } else { 6 };
         let [coarse, fine] = [1, 8].map(|walls| built_in(name, walls));
         assert_eq!(count(&coarse), sides * 2, "{name}");
         assert_eq!(count(&fine), sides * 2 * 64, "{name}");
@@ -27,7 +30,7 @@ fn walls_are_grids_of_as_many_quads_as_asked() {
 #[test]
 fn closed_room_is_watertight_and_faces_inward() {
     for walls in [1, 3, 8] {
-        for name in ["brabec-room", "brabec-ceiling"] {
+        for name in BUILT_IN.map(|(name, _)| name).into_iter().filter(|name| *name != "cornell") {
             let scene = built_in(name, walls);
             let room: Vec<&Mesh> = scene.meshes.iter().filter(|mesh| is_wall(mesh)).collect();
             assert_eq!(room.len(), 6);
@@ -41,7 +44,8 @@ fn closed_room_is_watertight_and_faces_inward() {
 #[test]
 fn objects_are_watertight_solids_that_face_outward_and_keep_apart() {
     for scene in every_built_in() {
-        let objects: Vec<&Mesh> = scene.meshes.iter().filter(|mesh| !is_wall(mesh)).collect();
+        let is_solid = |mesh: &&Mesh| !is_wall(mesh) && mesh.mask.is_none();
+        let objects: Vec<&Mesh> = scene.meshes.iter().filter(is_solid).collect();
         assert!(objects.len() >= 2);
         for mesh in objects {
             assert!(is_watertight([mesh]), "{}: {}", scene.name, mesh.name);
@@ -80,7 +84,8 @@ fn no_light_is_inside_or_near_an_object() {
     for scene in every_built_in() {
         let light = scene.lights[0].position;
         assert!(scene.bounds().contains(light), "{}", scene.name);
-        let reach = 0.1 * scene.bounds().extent().min_element();
+        // the bars of the cage are 0.3 m away on purpose
+        let reach = (0.1 * scene.bounds().extent().min_element()).min(0.29);
         for mesh in scene.meshes.iter().filter(|mesh| !is_wall(mesh)) {
             assert_eq!(enclosures(mesh, light), 0, "{}: {}", scene.name, mesh.name);
             let near = mesh.positions.iter().any(|p| p.distance(light) < reach);
@@ -141,9 +146,119 @@ fn built_in_cameras_show_floor_walls_objects_and_shadows() {
 }
 
 #[test]
+fn box_of_the_seam_reaches_into_both_hemispheres() {
+    let scene = built_in("seam-box", 1);
+    let light = scene.lights[0];
+    assert_eq!((light.axis, light.position), (None, scene.bounds().center()));
+    let sides = |part: &str| {
+        let mesh = scene.meshes.iter().find(|mesh| mesh.name.contains(part)).unwrap();
+        let above = |p: &&Vec3| p.y > light.position.y;
+        (mesh.positions.iter().filter(above).count(), mesh.positions.len())
+    };
+    assert_eq!(sides("across"), (12, 24), "half its vertices");
+    assert_eq!(sides("below").0, 0);
+    assert_eq!(scene.triangle_count(), 12 + 2 * 12);
+}
+
+#[test]
+fn cage_has_bars_that_keep_apart_on_all_sides() {
+    let scene = built_in("cage", 1);
+    let light = scene.lights[0].position;
+    let cage = scene.meshes.iter().find(|mesh| mesh.name == "cage").unwrap();
+    // 12 triangles and 24 vertices a bar, 4 x 4 - 2 x 2 bars an axis
+    assert_eq!((cage.triangles.len(), cage.positions.len()), (3 * 12 * 12, 3 * 12 * 24));
+    let bars: Vec<[Vec3; 2]> = cage
+        .positions
+        .chunks(24)
+        .map(|bar| [Vec3::min, Vec3::max].map(|f| bar.iter().copied().reduce(f).unwrap() - light))
+        .collect();
+    for (i, [min, max]) in bars.iter().enumerate() {
+        // the nearest point of the bar, in the largest norm
+        let nearest = min.max(-max).max(Vec3::ZERO).max_element();
+        assert!((0.29..0.35).contains(&nearest), "bar {i} at {nearest}");
+        let apart = |[low, high]: &[Vec3; 2]| low.cmpgt(*max).any() || high.cmplt(*min).any();
+        assert!(bars[i + 1..].iter().all(apart), "bar {i}");
+    }
+    for side in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]) {
+        let beyond = bars.iter().filter(|bar| bar.iter().all(|p| p.dot(side) > 0.29)).count();
+        assert_eq!(beyond, 8, "{side}: four bars each way");
+    }
+}
+
+#[test]
+fn masks_of_the_fence_have_holes_and_their_edges_repeat() {
+    let scene = built_in("fence", 1);
+    let masked: Vec<&Mesh> = scene.meshes.iter().filter(|mesh| mesh.mask.is_some()).collect();
+    assert_eq!(masked.iter().map(|mesh| mesh.triangles.len()).sum::<usize>(), 4);
+    for mesh in masked {
+        assert_eq!(mesh.texcoords.len(), mesh.positions.len());
+        assert!(mesh.texcoords.iter().all(|texcoord| texcoord.max_element() <= 5.0));
+        let mask = mesh.mask.as_ref().unwrap();
+        assert_eq!(mask.alpha.len() as u32, mask.width * mask.height);
+        let opaque = mask.alpha.iter().filter(|&&alpha| alpha == 255).count();
+        let share = opaque as f32 / mask.alpha.len() as f32;
+        assert!((0.2..0.8).contains(&share), "{}: {share} of it", mesh.name);
+        // point symmetric, so that neighbours meet alike
+        assert!(mask.alpha.iter().eq(mask.alpha.iter().rev()), "{}", mesh.name);
+        let [low, high] = [Vec2::splat(0.01), Vec2::splat(0.99)];
+        assert_eq!(mask.opaque(low), mask.opaque(high), "{}", mesh.name);
+    }
+}
+
+#[test]
+fn dozen_has_about_as_many_triangles_as_asked() {
+    for asked in [1_000, 6_000, 40_000, 550_000] {
+        let count = dozen(asked).triangle_count();
+        // rounding a cut of n rows to a whole number changes n^2 by up to 1 / n of it
+        let rows = (asked as f64 / 12.0 / 12.0).sqrt();
+        assert!((count as f64 / asked as f64 - 1.0).abs() <= 1.0 / rows, "{count} of {asked}");
+    }
+}
+
+#[test]
+fn crowd_has_as_many_triangles_as_asked_and_its_objects_keep_apart() {
+    // a twelfth of a percent and less from 15,000 on, 1.2% at 1,000
+    for asked in [1_000, 1_001, 4_321, 40_000, 123_456, 600_000, 2_000_000] {
+        let count = crowd(asked).triangle_count();
+        assert!(count <= asked && count + 12 > asked, "{count} instead of {asked}");
+    }
+    assert_eq!((crowd(0), crowd(usize::MAX)), (crowd(1_000), crowd(2_000_000)));
+    let scene = crowd(40_000);
+    assert_eq!(scene, built_in("crowd", 1), "the same each time");
+    let light = scene.lights[0].position;
+    let mut balls: Vec<(Vec3, f32)> = Vec::new();
+    for (part, vertices) in [("spheres", 9 * 16), ("boxes", 6 * 25)] {
+        let mesh = scene.meshes.iter().find(|mesh| mesh.name == part).unwrap();
+        // what is left are the smaller boxes that end the list
+        for object in mesh.positions.chunks_exact(vertices) {
+            let middle = object.iter().sum::<Vec3>() / vertices as f32;
+            let radius = object.iter().map(|p| p.distance(middle)).fold(0.0, f32::max);
+            balls.push((middle, radius));
+        }
+    }
+    for (i, (middle, radius)) in balls.iter().enumerate() {
+        assert!(middle.distance(light) > radius + 0.49);
+        let apart = |(other, reach): &(Vec3, f32)| middle.distance(*other) > radius + reach;
+        assert!(balls[i + 1..].iter().all(apart), "object {i}");
+    }
+    // evenly: each eighth of the room holds an eighth of them, within a quarter; the camera's own,
+    // part of which is kept free for its view, at least half as many
+    let eighth = balls.len() / 8;
+    for octant in 0..8 {
+        let in_octant = |(middle, _): &&(Vec3, f32)| {
+            (0..3).all(|k| (middle[k] > light[k]) == (octant >> k & 1 == 1))
+        };
+        let count = balls.iter().filter(in_octant).count();
+        let least = if octant == 7 { eighth / 2 } else { eighth * 3 / 4 };
+        let most = eighth * 5 / 4;
+        assert!((least..=most).contains(&count), "{count} of {eighth} in octant {octant}");
+    }
+}
+
+#[test]
 fn names_with_typing_errors_get_a_suggestion() {
     let message = |name| open(name, &Options::default()).unwrap_err().to_string();
-    let help = "(built in: brabec-room, brabec-ceiling, cornell; \
+    let help = "(built in: brabec-room, brabec-ceiling, cornell, seam-box, cage, fence, crowd; \
                 or give the path of a .obj, .gltf or .glb file)";
     for (typed, meant) in
         [("brabec-rom", "brabec-room"), ("brabec-c", "brabec-ceiling"), ("Cornel", "cornell")]
@@ -151,6 +266,8 @@ fn names_with_typing_errors_get_a_suggestion() {
         let expected = format!("no scene is called `{typed}`; did you mean `{meant}`? {help}");
         assert_eq!(message(typed), expected);
     }
+    // of a name as short as `cage`, half a word is not a typing error
+    assert_eq!(message("bad"), format!("no scene is called `bad` {help}"));
     assert_eq!(message("teapot"), format!("no scene is called `teapot` {help}"));
     assert_eq!(message(""), format!("no scene is called `` {help}"));
 }

@@ -7,9 +7,13 @@ use crate::{assert_valid, error, file, read, shared};
 
 /// A binary file of the given JSON and the buffer that [`ACCESSORS`] describes.
 pub(crate) fn glb(json: &str) -> Vec<u8> {
+    glb_with(json, &buffer())
+}
+
+/// A binary file; the buffer's length must be a multiple of 4.
+pub(crate) fn glb_with(json: &str, bin: &[u8]) -> Vec<u8> {
     let mut json = json.as_bytes().to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let bin = buffer();
     let mut out = b"glTF".to_vec();
     let number = |n: usize, out: &mut Vec<u8>| out.extend((n as u32).to_le_bytes());
     number(2, &mut out);

@@ -5,6 +5,8 @@
 mod built_in;
 mod gltf_faults;
 mod gltf_files;
+mod mask_faults;
+mod masks;
 mod obj_files;
 mod view;
 
@@ -129,6 +131,8 @@ fn assert_valid(scene: &Scene) {
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
         assert!(mesh.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-6), "{}", mesh.name);
         assert!(mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.positions.len()));
+        let texcoords = if mesh.mask.is_some() { mesh.positions.len() } else { 0 };
+        assert_eq!(mesh.texcoords.len(), texcoords, "{}", mesh.name);
         assert!(mesh.albedo.cmpge(Vec3::ZERO).all() && mesh.albedo.cmple(Vec3::ONE).all());
     }
     for light in &scene.lights {

@@ -9,6 +9,7 @@ mod common;
 mod closed_forms;
 mod integers;
 mod occluders;
+mod opacity;
 mod search;
 mod watertight;
 

@@ -1,15 +1,19 @@
 //! glTF 2.0, text or binary: triangles, punctual lights and the first perspective camera.
 
+use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::path::Path;
 
 use ::gltf::camera::Projection;
 use ::gltf::json::validation::Checked;
 use ::gltf::khr_lights_punctual::Kind;
+use ::gltf::material::AlphaMode;
 use ::gltf::{Document, Gltf, Node, Semantic, buffer};
 use glam::{Mat4, Vec3};
 
+use super::alpha::Images;
 use super::{malformed, primitive, unit};
+use crate::scene::mask::Coverage;
 use crate::scene::{Camera, Light, Scene, SceneError};
 
 /// Adds the file's content and warnings to the scene; returns what it found, in words.
@@ -26,15 +30,24 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
             return Err(SceneError::RequiredExtension { path: path.into(), extension });
         }
     }
+    let mut colored = 0;
     // The crate's validation refuses attributes that it does not know, which the format allows.
     for primitive in json.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
-        let read = [Semantic::Positions, Semantic::Normals].map(Checked::Valid);
-        primitive.attributes.retain(|name, _| read.contains(name));
+        let material = primitive.material.and_then(|index| json.materials.get(index.value()));
+        let masked = material.is_some_and(|m| m.alpha_mode == Checked::Valid(AlphaMode::Mask));
+        let colors = Checked::Valid(Semantic::Colors(0));
+        colored += usize::from(masked && primitive.attributes.contains_key(&colors));
+        primitive.attributes.retain(|name, _| match name {
+            Checked::Valid(Semantic::Positions | Semantic::Normals) => true,
+            Checked::Valid(Semantic::TexCoords(_)) => masked,
+            _ => false,
+        });
     }
     let document = Document::from_json(json).map_err(|e| malformed(path, e))?;
     let mut reader = Reader {
         path,
         buffers: buffers(path, &document, file.blob)?,
+        images: Images { path, decoded: HashMap::new() },
         scene,
         mesh_nodes: 0,
         not_triangles: 0,
@@ -48,6 +61,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
             scene.warnings.push(format!("{count} {what}"));
         }
     };
+    counted(colored, "masked primitives have vertex colours, whose alpha is ignored");
     counted(not_triangles, "point or line primitives skipped");
     counted(directional, "directional lights skipped: they have no position");
     counted(dark, "lights without colour, position or direction skipped");
@@ -86,6 +100,7 @@ fn buffers(
 struct Reader<'a> {
     path: &'a Path,
     buffers: Vec<buffer::Data>,
+    images: Images<'a>,
     scene: &'a mut Scene,
     mesh_nodes: usize,
     not_triangles: usize,
@@ -145,7 +160,14 @@ impl Reader<'_> {
                     continue;
                 }
                 let warnings = &mut self.scene.warnings;
-                let mesh = primitive::mesh(name.clone(), &it, world, &self.buffers, warnings)
+                let images = &mut self.images;
+                let mask = match images.coverage(&it.material(), &name, &self.buffers, warnings)? {
+                    Coverage::Opaque => None,
+                    Coverage::Masked(mask) => Some(mask),
+                    Coverage::Nothing => continue,
+                };
+                let (label, buffers) = (name.clone(), &self.buffers);
+                let mesh = primitive::mesh(label, &it, mask, world, buffers, warnings)
                     .map_err(|what| malformed(self.path, format!("mesh `{name}`: {what}")))?;
                 self.scene.meshes.extend(mesh);
             }

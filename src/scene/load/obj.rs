@@ -36,8 +36,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
             let what = "some corners have no normal, so all got their face's";
             warnings.push(format!("mesh `{name}`: {what}"));
         }
-        let corner =
-            |position| Corner { position, normal: (!normals.is_empty()).then_some(position) };
+        let normal = |position| (!normals.is_empty()).then_some(position);
+        let corner = |position| Corner { position, normal: normal(position), texcoord: None };
         let mut triangles = Vec::new();
         let mut rest = &mesh.indices[..];
         for &arity in &mesh.face_arities {
@@ -58,8 +58,10 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
             name: material.map_or(name.clone(), |material| format!("{name}/{}", material.name)),
             positions: &positions,
             normals: &normals,
+            texcoords: &[],
             triangles,
             albedo: material.and_then(|material| material.diffuse).map_or(DEFAULT_ALBEDO, albedo),
+            mask: None,
         };
         scene.meshes.extend(draft.finish(warnings));
     }

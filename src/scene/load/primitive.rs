@@ -1,12 +1,12 @@
 //! One glTF primitive: its accessors, made into a mesh in world space.
 
 use ::gltf::accessor::{DataType, Dimensions};
-use ::gltf::mesh::Mode;
+use ::gltf::mesh::{Mode, Reader};
 use ::gltf::{Accessor, Primitive, Semantic, buffer};
-use glam::{DMat3, Mat4, Vec3};
+use glam::{DMat3, Mat4, Vec2, Vec3};
 
-use super::{Corner, Draft, albedo};
-use crate::scene::Mesh;
+use super::{Corner, Draft, albedo, alpha};
+use crate::scene::{Mask, Mesh};
 
 pub(super) fn has_triangles(mode: Mode) -> bool {
     use Mode::{TriangleFan, TriangleStrip, Triangles};
@@ -17,6 +17,7 @@ pub(super) fn has_triangles(mode: Mode) -> bool {
 pub(super) fn mesh(
     name: String,
     primitive: &Primitive,
+    mut mask: Option<Mask>,
     world: Mat4,
     buffers: &[buffer::Data],
     warnings: &mut Vec<String>,
@@ -53,20 +54,54 @@ pub(super) fn mesh(
         }
     };
 
-    let corner = |position| Corner { position, normal: normals.is_some().then_some(position) };
+    let texcoords = match &mask {
+        None => Vec::new(),
+        Some(_) => texcoords(primitive, &reader)?.unwrap_or_else(|| {
+            let what = "its mask has no texture coordinates, so it is opaque";
+            warnings.push(format!("mesh `{name}`: {what}"));
+            mask = None;
+            Vec::new()
+        }),
+    };
+
+    let corner = |position| Corner {
+        position,
+        normal: normals.is_some().then_some(position),
+        texcoord: mask.is_some().then_some(position),
+    };
     let [r, g, b, _] = primitive.material().pbr_metallic_roughness().base_color_factor();
     let draft = Draft {
         name,
         positions: &positions,
         normals: normals.as_deref().unwrap_or_default(),
+        texcoords: &texcoords,
         triangles: triangles(primitive.mode(), &indices)
             .into_iter()
             // A mirroring transform turns the winding around (glTF 2.0, 3.7.4).
             .map(|[a, b, c]| if mirrored { [a, c, b] } else { [a, b, c] }.map(corner))
             .collect(),
         albedo: albedo([r, g, b]),
+        mask,
     };
     Ok(draft.finish(warnings))
+}
+
+/// Where the mask is read; `None` if the primitive does not say.
+fn texcoords<'a, 's, F>(
+    primitive: &Primitive<'a>,
+    reader: &Reader<'a, 's, F>,
+) -> Result<Option<Vec<Vec2>>, String>
+where
+    F: Clone + Fn(buffer::Buffer<'a>) -> Option<&'s [u8]>,
+{
+    let set = alpha::texcoord_set(primitive);
+    let found = set.and_then(|set| Some((set, primitive.get(&Semantic::TexCoords(set))?)));
+    let Some((set, accessor)) = found else { return Ok(None) };
+    let types = [DataType::F32, DataType::U8, DataType::U16];
+    check("texture coordinates", Some(accessor), (Dimensions::Vec2, &types))?;
+    let read = reader.read_tex_coords(set).ok_or_else(|| outside("texture coordinates"))?;
+    let transform = alpha::transform(&primitive.material());
+    Ok(Some(read.into_f32().map(|texcoord| transform(texcoord.into())).collect()))
 }
 
 fn outside(what: &str) -> String {

@@ -1,0 +1,235 @@
+//! The map passes of the paraboloid methods.
+
+use super::{mix, opaque, pick, triangle, vector, words};
+use crate::render::{Frame, FrameError, Method, Vertex, float};
+use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
+use crate::scalar::classify::{
+    DPSM_CULLED, DPSM_CURVED, DPSM_FLAT, DPSM_IN_BACK, DPSM_IN_FRONT, DPSM_LARGE, DPSM_STEEP,
+    DPSM_STRADDLING, dpsm_classify, dpsm_classify_kind, dpsm_classify_part,
+};
+use crate::scalar::depth::dpsm_depth;
+use crate::scalar::float::{Vec2, Vec3, Vec4};
+use crate::scalar::hemisphere::{DPSM_FRONT, dpsm_flip, dpsm_to_light};
+use crate::scalar::paraboloid::dpsm_texel_width;
+use crate::scalar::tessellate::{dpsm_tessellate_point, dpsm_tessellate_weights};
+use crate::scalar::triangle::{
+    dpsm_triangle, dpsm_triangle_disk, dpsm_triangle_distance, dpsm_triangle_fragment,
+    dpsm_triangle_hull, dpsm_triangle_weights,
+};
+
+/// The maps store true distances; the bias is the receiver's, so that it may differ by receiver.
+const NO_BIAS: f32 = 0.0;
+
+/// Paths of more halvings than this are given up for a hull around the whole map.
+const DEEPEST: u32 = 1 << 24;
+
+/// One map: stored depths of all casters.
+pub fn map_pass(frame: &Frame, map: u32, layer: &mut [f32]) -> Result<(), FrameError> {
+    let mut target = Target { frame, map, layer };
+    match frame.settings.method {
+        Method::Vertex | Method::FragmentDepth => target.straight(),
+        Method::Tessellated => target.tessellated()?,
+        Method::Exact | Method::Hybrid => target.sorted(),
+        Method::Cube => super::cube::map_pass(frame, map, target.layer),
+    }
+    Ok(())
+}
+
+struct Target<'a> {
+    frame: &'a Frame,
+    map: u32,
+    layer: &'a mut [f32],
+}
+
+impl Target<'_> {
+    fn store(&mut self, x: u32, y: u32, depth: f32) {
+        if (0.0..=1.0).contains(&depth) {
+            let texel = &mut self.layer[(y * self.frame.settings.size + x) as usize];
+            *texel = texel.min(self.frame.settings.format.store(depth));
+        }
+    }
+
+    fn place(&self, vertex: &Vertex) -> Vec3<f32> {
+        dpsm_flip(dpsm_to_light(float(vertex.position), self.frame.light), self.map)
+    }
+
+    /// Brabec's method and the blog's: straight edges between the vertices.
+    fn straight(&mut self) {
+        let Frame { light, settings, .. } = self.frame;
+        let place = |vertex: &Vertex| {
+            let p = self.place(vertex);
+            (p, dpsm_caster_vertex(p, *light, NO_BIAS))
+        };
+        let placed: Vec<_> = self.frame.vertices.iter().map(place).collect();
+        for (index, corners) in (0..).zip(&self.frame.triangles) {
+            let Some(corners) = pick(&placed, *corners) else { continue };
+            let clip = corners.map(|(_, vertex)| vertex.clip);
+            triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+                let (keep, depth) = if settings.method == Method::Vertex {
+                    let value = |(_, vertex): (_, crate::scalar::caster::DpsmCasterVertex<f32>)| {
+                        [vertex.hemisphere_value]
+                    };
+                    let [value] = mix(fragment.weights, corners, value);
+                    (dpsm_caster_keep(value), fragment.depth)
+                } else {
+                    let p = vector(mix(fragment.weights, corners, |(p, _)| words(p)));
+                    let stored = dpsm_caster_fragment(p, *light, NO_BIAS);
+                    (stored.keep, stored.depth)
+                };
+                if keep && opaque(self.frame, index, &fragment) {
+                    self.store(fragment.x, fragment.y, depth);
+                }
+            });
+        }
+    }
+
+    /// Brabec's method on subdivided triangles.
+    fn tessellated(&mut self) -> Result<(), FrameError> {
+        let Frame { light, settings, .. } = self.frame;
+        let extents = self.frame.extents();
+        let levels = self.frame.levels(&extents, light)?;
+        for (extent, level) in extents.into_iter().zip(levels) {
+            if !extent.is_seen(light, Some(self.map)) {
+                continue;
+            }
+            for index in extent.triangles {
+                let corners = self.frame.triangles[index as usize];
+                let Some(corners) = pick(&self.frame.vertices, corners) else { continue };
+                let [a, b, c] = corners.map(|vertex| float(vertex.position));
+                for first in (0..3 * level * level).step_by(3) {
+                    let weights = [0, 1, 2].map(|i| dpsm_tessellate_weights(level, first + i));
+                    let corners = weights.map(|weights| {
+                        let p = dpsm_to_light(dpsm_tessellate_point(a, b, c, weights), *light);
+                        dpsm_caster_vertex(dpsm_flip(p, self.map), *light, NO_BIAS)
+                    });
+                    let clip = corners.map(|vertex| vertex.clip);
+                    triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+                        let value = |vertex: crate::scalar::caster::DpsmCasterVertex<f32>| {
+                            [vertex.hemisphere_value]
+                        };
+                        let [value] = mix(fragment.weights, corners, value);
+                        let whole = mix(fragment.weights, weights, |w| {
+                            w.map(|numerator| numerator as f32 / level as f32)
+                        });
+                        let seen = self.frame.opaque(index, whole.map(f64::from));
+                        if dpsm_caster_keep(value) && seen {
+                            self.store(fragment.x, fragment.y, fragment.depth);
+                        }
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The exact and hybrid methods: as classify.wesl sorts and caster.wesl draws.
+    fn sorted(&mut self) {
+        let Frame { light, settings, .. } = self.frame;
+        let [tau, depth_tolerance] = settings.tolerances();
+        let bit = if self.map == DPSM_FRONT { DPSM_IN_FRONT } else { DPSM_IN_BACK };
+        let place = |vertex: &Vertex| dpsm_to_light(float(vertex.position), *light);
+        let placed: Vec<_> = self.frame.vertices.iter().map(place).collect();
+        for (index, corners) in (0..).zip(&self.frame.triangles) {
+            let Some([a, b, c]) = pick(&placed, *corners) else { continue };
+            let found = dpsm_classify(a, b, c, *light, tau, depth_tolerance);
+            if found.kind == DPSM_CULLED || found.hemispheres & bit == 0 {
+                continue;
+            }
+            let flipped = [a, b, c].map(|p| dpsm_flip(p, self.map));
+            let flat = [DPSM_FLAT, DPSM_STRADDLING, DPSM_STEEP].contains(&found.kind);
+            match flat && self.frame.mask(index).is_none() {
+                true if found.kind == DPSM_STEEP => self.steep(flipped, tau),
+                true => self.flat(flipped),
+                false if found.kind == DPSM_LARGE => self.parts(index, flipped, tau),
+                false => self.curved(index, flipped, tau, Some(1)),
+            }
+        }
+    }
+
+    fn flat(&mut self, corners: [Vec3<f32>; 3]) {
+        let Frame { light, settings, .. } = self.frame;
+        let clip = corners.map(|p| dpsm_caster_vertex(p, *light, NO_BIAS).clip);
+        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+            let uv = self.disk(fragment.x, fragment.y);
+            if uv.length() <= 1.0 + light.guard {
+                self.store(fragment.x, fragment.y, fragment.depth);
+            }
+        });
+    }
+
+    /// A flat triangle with the distance of its plane at each texel.
+    fn steep(&mut self, corners: [Vec3<f32>; 3], tau: f32) {
+        let Frame { light, settings, .. } = self.frame;
+        let [a, b, c] = corners;
+        let prepared = dpsm_triangle(a, b, c, *light, tau);
+        let clip = corners.map(|p| dpsm_caster_vertex(p, *light, NO_BIAS).clip);
+        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+            let uv = self.disk(fragment.x, fragment.y);
+            let l = dpsm_triangle_distance(prepared, uv);
+            self.store(fragment.x, fragment.y, dpsm_depth(l, light.near, light.far));
+        });
+    }
+
+    /// The parts of a large triangle.
+    fn parts(&mut self, index: u32, corners: [Vec3<f32>; 3], tau: f32) {
+        let [a, b, c] = corners;
+        let mut path = 1;
+        loop {
+            let part = dpsm_classify_part(a, b, c, path);
+            let kind = dpsm_classify_kind(part, self.frame.light);
+            if kind == DPSM_LARGE {
+                if path >= DEEPEST {
+                    return self.curved(index, corners, tau, None);
+                }
+                path *= 2;
+                continue;
+            }
+            if kind == DPSM_CURVED {
+                self.curved(index, corners, tau, Some(path));
+            }
+            path = (path + 1) >> (path + 1).trailing_zeros();
+            if path == 1 {
+                return;
+            }
+        }
+    }
+
+    /// A part of a curved triangle, or for `None` all of it by every texel.
+    fn curved(&mut self, index: u32, corners: [Vec3<f32>; 3], tau: f32, path: Option<u32>) {
+        let Frame { light, settings, .. } = self.frame;
+        let [a, b, c] = corners;
+        let prepared = dpsm_triangle(a, b, c, *light, tau);
+        let rim = 1.0 + light.guard;
+        let hull = match path {
+            Some(path) => {
+                let part = dpsm_classify_part(a, b, c, path);
+                let hull = dpsm_triangle_hull(part.a, part.b, part.c, *light);
+                [hull.a, hull.b, hull.c]
+            }
+            None => {
+                [[-rim, -rim], [3.0 * rim, -rim], [-rim, 3.0 * rim]].map(|[x, y]| Vec2::new(x, y))
+            }
+        };
+        let clip = hull.map(|uv| Vec4::new(uv.x / rim, uv.y / rim, 0.5, 1.0));
+        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+            let uv = self.disk(fragment.x, fragment.y);
+            let stored = dpsm_triangle_fragment(prepared, uv, *light, NO_BIAS);
+            let weights = || {
+                let weights = dpsm_triangle_weights(a, b, c, uv);
+                [weights.x, weights.y, weights.z].map(f64::from)
+            };
+            let masked = self.frame.mask(index).is_some();
+            if stored.keep && (!masked || self.frame.opaque(index, weights())) {
+                self.store(fragment.x, fragment.y, stored.depth);
+            }
+        });
+    }
+
+    /// The disk coordinates of a texel's centre.
+    fn disk(&self, x: u32, y: u32) -> Vec2<f32> {
+        let light = &self.frame.light;
+        let middle = Vec2::splat(0.5 * light.size);
+        let position = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+        dpsm_triangle_disk(position, middle, dpsm_texel_width(light.size, light.guard))
+    }
+}

@@ -1,0 +1,124 @@
+//! What the alpha of glTF materials leaves of their meshes.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use ::gltf::image::Source;
+use ::gltf::material::{AlphaMode, Material};
+use ::gltf::texture::{Texture, WrappingMode};
+use ::gltf::{Primitive, buffer};
+use glam::Vec2;
+
+use crate::scene::SceneError;
+use crate::scene::mask::{Coverage, Mask};
+
+/// glTF's cutoff where the material gives none.
+const DEFAULT_CUTOFF: f32 = 0.5;
+
+/// Sizes and alphas of a file's images, each decoded once.
+pub(super) struct Images<'a> {
+    pub path: &'a Path,
+    pub decoded: HashMap<usize, ([u32; 2], Vec<u8>)>,
+}
+
+impl Images<'_> {
+    /// What a material leaves of the mesh of that name.
+    pub(super) fn coverage(
+        &mut self,
+        material: &Material,
+        mesh: &str,
+        buffers: &[buffer::Data],
+        warnings: &mut Vec<String>,
+    ) -> Result<Coverage, SceneError> {
+        let mut warn = |what: &str| warnings.push(format!("mesh `{mesh}`: {what}"));
+        match material.alpha_mode() {
+            AlphaMode::Opaque => return Ok(Coverage::Opaque),
+            AlphaMode::Blend => {
+                warn("alphaMode BLEND is not supported, so it is opaque");
+                return Ok(Coverage::Opaque);
+            }
+            AlphaMode::Mask => {}
+        }
+        let color = material.pbr_metallic_roughness();
+        // Without a texture the factor decides, as one opaque texel would let it.
+        let (size, alpha) = match color.base_color_texture() {
+            None => ([1, 1], vec![u8::MAX]),
+            Some(info) => {
+                let sampler = info.texture().sampler();
+                if [sampler.wrap_s(), sampler.wrap_t()] != [WrappingMode::Repeat; 2] {
+                    warn("its mask repeats, although the file wraps it another way");
+                }
+                self.image(&info.texture(), mesh, buffers)?
+            }
+        };
+        let [.., factor] = color.base_color_factor();
+        let cutoff = material.alpha_cutoff().unwrap_or(DEFAULT_CUTOFF);
+        let coverage = Mask::of_material(size, alpha, factor, cutoff);
+        if let Coverage::Nothing = coverage {
+            warn("its alpha is below the cutoff everywhere, so it is left out");
+        }
+        Ok(coverage)
+    }
+
+    /// Size and alphas of a texture's image.
+    fn image(
+        &mut self,
+        texture: &Texture,
+        mesh: &str,
+        buffers: &[buffer::Data],
+    ) -> Result<([u32; 2], Vec<u8>), SceneError> {
+        let image = texture.source();
+        if let Some(known) = self.decoded.get(&image.index()) {
+            return Ok(known.clone());
+        }
+        let error = |what: String| {
+            let image = match image.source() {
+                Source::Uri { uri, .. } if !uri.starts_with("data:") => uri.into(),
+                _ => image.name().map_or_else(|| image.index().to_string(), String::from),
+            };
+            SceneError::Image { path: self.path.into(), image, mesh: mesh.into(), what }
+        };
+        let file;
+        let bytes = match image.source() {
+            Source::View { view, .. } => {
+                let (start, length) = (view.offset(), view.length());
+                let whole = buffers.get(view.buffer().index());
+                whole
+                    .and_then(|data| data.get(start..)?.get(..length))
+                    .ok_or_else(|| error("it lies outside its buffer".into()))?
+            }
+            Source::Uri { uri, .. } => {
+                let source = buffer::Source::Uri(uri);
+                file = buffer::Data::from_source_and_blob(source, self.path.parent(), &mut None)
+                    .map_err(|e| error(e.to_string()))?;
+                &file[..]
+            }
+        };
+        let picture = ::image::load_from_memory(bytes).map_err(|e| error(e.to_string()))?;
+        let size = [picture.width(), picture.height()];
+        let alpha = picture.into_rgba8().pixels().map(|pixel| pixel.0[3]).collect();
+        Ok(self.decoded.entry(image.index()).or_insert((size, alpha)).clone())
+    }
+}
+
+/// Where a primitive keeps the texture coordinates of its base colour.
+pub(super) fn texcoord_set(primitive: &Primitive) -> Option<u32> {
+    let info = primitive.material().pbr_metallic_roughness().base_color_texture()?;
+    let moved = info.texture_transform().and_then(|transform| transform.tex_coord());
+    Some(moved.unwrap_or(info.tex_coord()))
+}
+
+/// What a material does to texture coordinates before it reads its base colour: it scales them,
+/// turns them around the origin from +v to +u, and moves them (KHR_texture_transform).
+pub(super) fn transform(material: &Material) -> impl Fn(Vec2) -> Vec2 + use<> {
+    let info = material.pbr_metallic_roughness().base_color_texture();
+    let transform = info.and_then(|info| {
+        let transform = info.texture_transform()?;
+        let turn = Vec2::from_angle(-transform.rotation());
+        Some((Vec2::from(transform.scale()), turn, Vec2::from(transform.offset())))
+    });
+    move |texcoord| match transform {
+        None => texcoord,
+        Some((scale, turn, offset)) => turn.rotate(scale * texcoord) + offset,
+    }
+}
