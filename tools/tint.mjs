@@ -15,5 +15,5 @@ for (const path of process.argv.slice(2)) {
   }
   if (await device.popErrorScope()) errors += messages.length === 0;
 }
-console.log(`Tint: ${process.argv.length - 2} files, ${errors} errors`);
+console.log(`Tint: ${process.argv.slice(2).join(' ')}, ${errors} errors`);
 process.exit(errors ? 1 : 0);
