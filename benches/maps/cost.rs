@@ -81,10 +81,11 @@ pub fn lights(device: &Device) -> Result<(), GpuError> {
     let place = Place::of(scene::dozen(40_000), "dozen");
     let title = "dozen, 40,000 triangles, maps of 256 x 256 in one array";
     table(title, "lights", "cost-lights.svg", &[1, 4, 16, 64], |count| {
-        let adapt = |method| Settings { size: SMALL, keep_lists: true, ..settings(method) };
-        let mesh = MeshBuffers::new(device, &place.frame(adapt(Method::Vertex)))?;
+        let adapt =
+            |method, parts| Settings { size: SMALL, keep_lists: parts == KEPT, ..settings(method) };
+        let mesh = MeshBuffers::new(device, &place.frame(adapt(Method::Vertex, Parts::ALL)))?;
         let variant = |(name, method, parts): (&str, Method, Parts)| {
-            let frame = place.frame(adapt(method));
+            let frame = place.frame(adapt(method, parts));
             // a grid of lights around the scene's own
             let light = |i: u32| {
                 let step = Vec3::new((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
