@@ -116,7 +116,7 @@ fn dpsm_edge_ordered(a: vec3<f32>, b: vec3<f32>) -> bool {
 /// (b, a). Zero where the points and the light are on one line.
 ///
 /// Domain: |a|, |b| in [2^-50, 2^62]. Bound: rounding moves the arc between the points by at most
-/// 21 eps rad.
+/// (4.5 / cos(phi / 2) + 5) eps rad, phi the angle between them: 23 eps up to 150 degrees.
 fn dpsm_edge_normal(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     let ordered = dpsm_edge_ordered(a, b);
     let first = select(b, a, ordered);
@@ -139,8 +139,8 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
 }
 
 /// True where an edge may be drawn as its chord: its sagitta is at most 15/16 of tau texels, the
-/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing else, and
-/// is the same in both maps, so the triangles that share the edge agree.
+/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing
+/// else, and is the same in both maps, so the triangles that share the edge agree.
 ///
 /// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
 fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
@@ -163,8 +163,7 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, where the ray to the nearer end meets the edge at 1/4 rad or
-/// more. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
+/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
 /// ones may leave holes of the rest.
 fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);

@@ -169,7 +169,7 @@ fn dpsm_edge_ordered(a: vec3<f32>, b: vec3<f32>) -> bool {
 /// (b, a). Zero where the points and the light are on one line.
 ///
 /// Domain: |a|, |b| in [2^-50, 2^62]. Bound: rounding moves the arc between the points by at most
-/// 21 eps rad.
+/// (4.5 / cos(phi / 2) + 5) eps rad, phi the angle between them: 23 eps up to 150 degrees.
 fn dpsm_edge_normal(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     let ordered = dpsm_edge_ordered(a, b);
     let first = select(b, a, ordered);
@@ -192,8 +192,8 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
 }
 
 /// True where an edge may be drawn as its chord: its sagitta is at most 15/16 of tau texels, the
-/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing else, and
-/// is the same in both maps, so the triangles that share the edge agree.
+/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing
+/// else, and is the same in both maps, so the triangles that share the edge agree.
 ///
 /// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
 fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
@@ -216,8 +216,7 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, where the ray to the nearer end meets the edge at 1/4 rad or
-/// more. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
+/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
 /// ones may leave holes of the rest.
 fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);
@@ -263,8 +262,8 @@ struct DpsmTriangle {
 /// Smallest height that is told from 0, as a share of the largest distance.
 const DPSM_TRIANGLE_HEIGHT: f32 = 0x1p-60;
 
-/// Largest chord on the disk of a triangle, or a part of one, that one hull surrounds: its arcs bow by
-/// at most an eighth of it, and the hull wastes little.
+/// Largest chord on the disk of a triangle, or a part of one, that one hull surrounds: its arcs bow
+/// by at most an eighth of it, and the hull wastes little.
 const DPSM_TRIANGLE_CHORD: f32 = 0.25;
 
 /// Smallest sine of a hull's angles: below it rounding would move its corners.
@@ -276,8 +275,8 @@ const DPSM_TRIANGLE_MARGIN: f32 = 0x1p-5;
 /// Unit normal and height: (normal, normal . vertex), the height below 0 where the triangle turns
 /// clockwise as seen from the light. Zero for a triangle without area.
 ///
-/// Domain: |vertex| in [2^-50, 2^62]. Bound: the plane moves by at most 24 eps of the largest
-/// distance within the triangle, for angles above 2^-10.
+/// Domain: |vertex| in [2^-50, 2^62]. Bound: within the triangle the plane moves by at most 24 eps
+/// of the farthest distance over the sine of the angle between the two shorter edges.
 fn dpsm_triangle_plane(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec4<f32> {
     // the two shorter edges span the plane best
     let ab = b - a;
@@ -348,8 +347,8 @@ fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
 /// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
 /// vertex.
 ///
-/// Domain: r <= 4, inside the triangle. Bound: relative 40 eps / cos, the cosine of the angle of
-/// incidence.
+/// Domain: r <= 4, inside the triangle. Bound: (24 farthest / sin + 16 l) eps / cos absolute, sin as
+/// for dpsm_triangle_plane, cos that of the angle of incidence.
 fn dpsm_triangle_distance(triangle: DpsmTriangle, uv: vec2<f32>) -> f32 {
     let terms = dpsm_edge_terms(uv);
     let whole = 1.0 + dot(uv, uv);
@@ -412,8 +411,8 @@ struct DpsmHull {
 }
 
 /// The hull of a triangle: three lines, each parallel to a chord and tangent to its arc where the
-/// arc lies outside, with a margin for the rasterizer. Of a needle, whose hull would have long tips: a right
-/// triangle around the rectangle along its longest chord.
+/// arc lies outside, with a margin for the rasterizer. Of a needle, whose hull would have long
+/// tips: a right triangle around the rectangle along its longest chord.
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: a triangle around the whole map.
 /// Domain: as for dpsm_triangle_plane. It holds every point that dpsm_triangle_covers

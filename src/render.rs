@@ -4,10 +4,14 @@ mod error;
 mod extent;
 mod meshes;
 mod projection;
+mod settings;
 
 pub use error::FrameError;
 pub use extent::Extent;
 pub use projection::{Projection, texel};
+pub use settings::{
+    Format, Level, Lookup, Method, Passes, Settings, constant_bias, depth_tolerance,
+};
 
 use std::ops::Range;
 use std::time::Duration;
@@ -17,146 +21,9 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::scalar::cube::{DPSM_CUBE_FACES, dpsm_cube_guard};
 use crate::scalar::float as scalar;
 use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
-use crate::scalar::maps::{DepthMaps, Sampling};
+use crate::scalar::maps::DepthMaps;
 use crate::scene::{Camera, Mask, Scene};
 use meshes::Meshes;
-
-/// Storage of a depth map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// 16-bit unorm.
-    D16,
-    /// 24-bit unorm; an adapter may use 32-bit float in its place.
-    D24,
-    /// 32-bit float.
-    D32,
-}
-
-impl Format {
-    /// Step of the stored values: 1 / 65535, 1 / 16777215, or 0 where f32 itself is stored.
-    pub fn quantum(self) -> f32 {
-        match self {
-            Format::D16 => 1.0 / 65535.0,
-            Format::D24 => 1.0 / 16777215.0,
-            Format::D32 => 0.0,
-        }
-    }
-
-    /// A depth in [0, 1] as the format stores it.
-    pub fn store(self, depth: f32) -> f32 {
-        let unorm = |steps: f64| ((f64::from(depth) * steps).round() / steps) as f32;
-        match self {
-            Format::D16 => unorm(65535.0),
-            Format::D24 => unorm(16777215.0),
-            Format::D32 => depth,
-        }
-    }
-}
-
-/// How the maps are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Brabec 2002: project vertices, interpolate everything.
-    Vertex,
-    /// The blog: radial depth of each fragment's interpolated position.
-    FragmentDepth,
-    /// Osman 2006: `Vertex` on subdivided triangles.
-    Tessellated,
-    /// Each triangle as its arcs bound it, its distance computed for each texel.
-    Exact,
-    /// Flat triangles where they are enough, exact ones elsewhere.
-    Hybrid,
-    /// Six perspective faces, the baseline.
-    Cube,
-}
-
-/// How finely the tessellated method subdivides.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// Each triangle into level^2 (Osman's constant level).
-    Constant(u32),
-    /// Each mesh as its longest edge, its distance and `tau` ask, up to a level.
-    Mesh(u32),
-}
-
-/// How the maps of a light are drawn and where they lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Passes {
-    /// One pass a map, one layer each.
-    Single,
-    /// All maps of a light in one pass, side by side in one layer.
-    Atlas,
-}
-
-/// Where receivers find their texture coordinates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lookup {
-    /// For each pixel (Osman 2006).
-    Pixel,
-    /// For each vertex, interpolated (Brabec 2002).
-    Vertex,
-}
-
-/// The settings of a rendering.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Map size N in texels.
-    pub size: u32,
-    /// Storage of the maps.
-    pub format: Format,
-    /// How the maps are made.
-    pub method: Method,
-    /// Hybrid method: how far an edge may be drawn from its place, in texels.
-    pub tau: f32,
-    /// Hybrid method: how far a stored distance may be off, relative; by default
-    /// `depth_tolerance`.
-    pub depth_tolerance: Option<f32>,
-    /// Tessellated method: how finely.
-    pub level: Level,
-    /// Cube method: leave out of each face what it cannot see.
-    pub cull_faces: bool,
-    /// How the maps are drawn.
-    pub passes: Passes,
-    /// Keep the lists of sorted triangles of every light, for scenes that stand still.
-    pub keep_lists: bool,
-    /// How receivers look.
-    pub lookup: Lookup,
-    /// How the maps are sampled: the hard test, or 2 x 2 comparisons.
-    pub sampling: Sampling,
-    /// Width and height of the lit image in pixels.
-    pub image: [u32; 2],
-    /// Near sphere's radius; by default a thousandth of far.
-    pub near: Option<f32>,
-    /// Far sphere's radius; by default just beyond the farthest vertex.
-    pub far: Option<f32>,
-    /// Constant bias in units of depth, at the receiver; by default `constant_bias`.
-    pub bias: Option<f32>,
-    /// Also give the maps and what the light sees of each hemisphere.
-    pub views: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            size: 1024,
-            format: Format::D32,
-            method: Method::Hybrid,
-            tau: 1.0 / 32.0,
-            depth_tolerance: None,
-            level: Level::Mesh(64),
-            cull_faces: true,
-            passes: Passes::Single,
-            keep_lists: false,
-            lookup: Lookup::Pixel,
-            sampling: Sampling::Nearest,
-            image: [960, 720],
-            near: None,
-            far: None,
-            bias: None,
-            views: false,
-        }
-    }
-}
 
 /// A vertex as the passes read it.
 #[repr(C)]
@@ -257,42 +124,6 @@ pub const LARGEST_SIZE: u32 = 16384;
 pub fn guard_band(size: u32) -> f32 {
     let diagonal = 2.0 * std::f32::consts::SQRT_2;
     (diagonal / (size as f32 - diagonal).max(diagonal)).min(1.0)
-}
-
-/// Brabec's constant bias in units of depth: what a receiver at the far sphere needs at 45 degrees
-/// incidence, half a texel's diagonal off, sqrt(2) / 2 texel of 4 (1 + guard) / N rad, plus one
-/// step of the format. For near much smaller than far; at most 1/4.
-pub fn constant_bias(size: u32, format: Format) -> f32 {
-    let pitch = 4.0 * (1.0 + guard_band(size)) / size as f32;
-    (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
-}
-
-/// The relative error of the hybrid method's distances that a bias of that many units of depth
-/// allows: a third of it, and at most 9/10 of a thousandth.
-pub fn depth_tolerance(bias: f32) -> f32 {
-    (bias / 3.0).min(9e-4)
-}
-
-impl Settings {
-    /// Texels along a side of a map: for the cube method half of `size`, as its faces then have
-    /// the same largest texel (docs/cube.md).
-    pub fn map_size(&self) -> u32 {
-        match self.method {
-            Method::Cube => (self.size / 2).max(1),
-            _ => self.size,
-        }
-    }
-
-    /// tau and depth tolerance of the method: both 0 for the exact one.
-    pub fn tolerances(&self) -> [f32; 2] {
-        let bias = constant_bias(self.size, self.format);
-        match self.method {
-            Method::Hybrid => {
-                [self.tau, self.depth_tolerance.unwrap_or_else(|| depth_tolerance(bias))]
-            }
-            _ => [0.0, 0.0],
-        }
-    }
 }
 
 impl Frame {

@@ -111,10 +111,14 @@ impl Sorter {
         let (path, text, entries): (_, _, &[&str]) = match by {
             By::Class => (
                 "classify.wesl",
-                include_str!("classify.wesl"),
+                concat!(include_str!("classify.wesl"), include_str!("pass.wesl")),
                 &["classify", "count", "prepare", "finish"],
             ),
-            By::Face => ("faces.wesl", include_str!("faces.wesl"), &["sort_faces", "finish_faces"]),
+            By::Face => (
+                "faces.wesl",
+                concat!(include_str!("faces.wesl"), include_str!("pass.wesl")),
+                &["sort_faces", "finish_faces"],
+            ),
         };
         let module = shader(device, path, text)?;
         let writable = match by {

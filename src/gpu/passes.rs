@@ -74,7 +74,8 @@ pub fn pipelines(
     method: Method,
     format: Format,
 ) -> Result<(Vec<wgpu::RenderPipeline>, wgpu::BindGroupLayout), GpuError> {
-    let text = concat!(include_str!("caster.wesl"), include_str!("mask.wesl"));
+    let text =
+        concat!(include_str!("caster.wesl"), include_str!("pass.wesl"), include_str!("mask.wesl"));
     let module = shader(device, "caster.wesl", text)?;
     device.step("the map pipelines", || {
         let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;

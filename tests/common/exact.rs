@@ -4,7 +4,7 @@ use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::paraboloid::dpsm_project;
 use fastrand::Rng;
 
-use super::{EPS, nearby, point, spread, unit};
+use super::{EPS, angle, nearby, point, spread, unit};
 
 /// A triangle of vertices in f64.
 pub type Corners = [Vec3<f64>; 3];
@@ -43,15 +43,10 @@ pub fn direction(uv: Vec2<f64>) -> Vec3<f64> {
     Vec3::new(2.0 * uv.x, 2.0 * uv.y, 1.0 - square) / (1.0 + square)
 }
 
-/// Sine of the angle at a between its ray to the light and the edge to b; 0 for no edge.
-pub fn sine_at(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
-    let sine = a.cross(b - a).length() / (a.length() * (b - a).length());
-    if sine.is_nan() { 0.0 } else { sine }
-}
-
-/// How far rounding may move an edge's arc, in radians (docs/edge.md): from its nearer end.
+/// How far rounding may move an edge's arc, in radians (docs/edge.md).
 pub fn arc_bound(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
-    (4.0 / sine_at(a, b).max(sine_at(b, a)).max(1e-9) + 5.0) * EPS
+    let half = 0.5 * angle(a, b);
+    (4.5 / half.cos().max(1e-9) + 5.0) * EPS
 }
 
 /// What a direction meets.
@@ -96,7 +91,7 @@ pub fn meet([a, b, c]: Corners, d: Vec3<f64>) -> Option<Meeting> {
 /// Points of the great circle arc between two directions, on the disk.
 pub fn arc(a: Vec3<f64>, b: Vec3<f64>, steps: u32) -> impl Iterator<Item = Vec2<f64>> {
     let (a, b) = (a / a.length(), b / b.length());
-    let angle = super::angle(a, b);
+    let angle = angle(a, b);
     (0..=steps).map(move |i| {
         let share = f64::from(i) / f64::from(steps);
         dpsm_project(a * ((1.0 - share) * angle).sin() + b * (share * angle).sin())
