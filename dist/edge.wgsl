@@ -138,16 +138,24 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
     return quarter * normal_z / (1.0 + sqrt(max(1.0 - square, 0.0)));
 }
 
-/// True where an edge may be drawn as its chord: its sagitta is at most 15/16 of tau texels, the
-/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing
-/// else, and is the same in both maps, so the triangles that share the edge agree.
+/// How far from an edge's arc its chord may be drawn, in disk units: the sagitta in the map of
+/// the ends, and the rasterizer's snapping. The same in both maps, and when turned.
+///
+/// Domain: as for dpsm_edge_normal. Bound: 14 eps absolute for chords up to 1.
+fn dpsm_edge_bow(a: vec3<f32>, b: vec3<f32>, light: DpsmLight) -> f32 {
+    let chord = dpsm_project_own(b) - dpsm_project_own(a);
+    let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
+    return snap + abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
+}
+
+/// True where an edge may be drawn as its chord: dpsm_edge_bow is at most 15/16 of tau texels, and
+/// both ends are on one side of the seam. It depends on nothing else, and is the same in both maps,
+/// so the triangles that share the edge agree.
 ///
 /// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
 fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let sagitta = abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
-    let limit = (0.9375 * tau - DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
-    return sagitta <= limit && a.z * b.z >= 0.0;
+    let limit = 0.9375 * tau * dpsm_texel_width(light.size, light.guard);
+    return dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= 0.0;
 }
 
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
@@ -157,9 +165,9 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
 }
 
-/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by the tau
-/// texels that may lie between it and its chord, so that no hole is left beside a triangle that
-/// is drawn with chords. Everything is on the right of it for ends in one direction, as their
+/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
+/// between it and its chord, at most tau texels, so that no hole is left beside a triangle that is
+/// drawn with chords. Everything is on the right of it for ends in one direction, as their
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
@@ -173,10 +181,12 @@ fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec
     if !dpsm_edge_flat(a, b, light, tau) {
         return vec4<f32>(0.5 * normal, 0.0);
     }
-    let texel = dpsm_texel_width(light.size, light.guard);
-    // the second order has a sixteenth of tau left; behind the seam this map's sagitta is larger
-    let most = select(tau, 4.0 * tau, a.z + b.z < 0.0);
     // the chord is on the right of an arc that bows to the left
-    let chord = select(DPSM_EDGE_SNAP, most, normal.z < 0.0) * texel;
-    return vec4<f32>(0.5 * normal, chord);
+    if normal.z >= 0.0 {
+        let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
+        return vec4<f32>(0.5 * normal, snap);
+    }
+    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
+    let most = select(16.0 / 15.0, 64.0 / 15.0, a.z + b.z < 0.0);
+    return vec4<f32>(0.5 * normal, most * dpsm_edge_bow(a, b, light));
 }

@@ -191,16 +191,24 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
     return quarter * normal_z / (1.0 + sqrt(max(1.0 - square, 0.0)));
 }
 
-/// True where an edge may be drawn as its chord: its sagitta is at most 15/16 of tau texels, the
-/// rasterizer's snapping included, and both ends are on one side of the seam. It depends on nothing
-/// else, and is the same in both maps, so the triangles that share the edge agree.
+/// How far from an edge's arc its chord may be drawn, in disk units: the sagitta in the map of
+/// the ends, and the rasterizer's snapping. The same in both maps, and when turned.
+///
+/// Domain: as for dpsm_edge_normal. Bound: 14 eps absolute for chords up to 1.
+fn dpsm_edge_bow(a: vec3<f32>, b: vec3<f32>, light: DpsmLight) -> f32 {
+    let chord = dpsm_project_own(b) - dpsm_project_own(a);
+    let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
+    return snap + abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
+}
+
+/// True where an edge may be drawn as its chord: dpsm_edge_bow is at most 15/16 of tau texels, and
+/// both ends are on one side of the seam. It depends on nothing else, and is the same in both maps,
+/// so the triangles that share the edge agree.
 ///
 /// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
 fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let sagitta = abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
-    let limit = (0.9375 * tau - DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
-    return sagitta <= limit && a.z * b.z >= 0.0;
+    let limit = 0.9375 * tau * dpsm_texel_width(light.size, light.guard);
+    return dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= 0.0;
 }
 
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
@@ -210,9 +218,9 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
 }
 
-/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by the tau
-/// texels that may lie between it and its chord, so that no hole is left beside a triangle that
-/// is drawn with chords. Everything is on the right of it for ends in one direction, as their
+/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
+/// between it and its chord, at most tau texels, so that no hole is left beside a triangle that is
+/// drawn with chords. Everything is on the right of it for ends in one direction, as their
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
@@ -226,12 +234,14 @@ fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec
     if !dpsm_edge_flat(a, b, light, tau) {
         return vec4<f32>(0.5 * normal, 0.0);
     }
-    let texel = dpsm_texel_width(light.size, light.guard);
-    // the second order has a sixteenth of tau left; behind the seam this map's sagitta is larger
-    let most = select(tau, 4.0 * tau, a.z + b.z < 0.0);
     // the chord is on the right of an arc that bows to the left
-    let chord = select(DPSM_EDGE_SNAP, most, normal.z < 0.0) * texel;
-    return vec4<f32>(0.5 * normal, chord);
+    if normal.z >= 0.0 {
+        let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
+        return vec4<f32>(0.5 * normal, snap);
+    }
+    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
+    let most = select(16.0 / 15.0, 64.0 / 15.0, a.z + b.z < 0.0);
+    return vec4<f32>(0.5 * normal, most * dpsm_edge_bow(a, b, light));
 }
 
 // dpsm::triangle
@@ -257,6 +267,8 @@ struct DpsmTriangle {
     third: vec4<f32>,
     /// Normal times largest distance over height, and the largest distance of a vertex.
     plane: vec4<f32>,
+    /// Its extent along its longest chord (dpsm_triangle_span).
+    span: vec3<f32>,
 }
 
 /// Smallest height that is told from 0, as a share of the largest distance.
@@ -324,12 +336,48 @@ fn dpsm_triangle(
         dpsm_edge_line(second, third, light, tau),
         dpsm_edge_line(third, a, light, tau),
         vec4<f32>(outward * (farthest / height), farthest),
+        dpsm_triangle_span(a, b, c, light),
     );
+}
+
+/// The extent of a triangle along its longest chord: a disk point is between the ends where
+/// |dot(span, (u, v, 1))| <= 1. At acute corners it ends what lines that are moved or rounded
+/// would reach beyond them. All of a triangle's arcs are within (docs/triangle.md).
+///
+/// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: zero, so every point is within; its
+/// parts have spans of their own. Domain: as for dpsm_triangle_plane. Bound: DPSM_EDGE_ROUNDING on
+/// the disk, which the extent has more, beside DPSM_TRIANGLE_MARGIN.
+fn dpsm_triangle_span(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> vec3<f32> {
+    let disk_a = dpsm_project(a);
+    let disk_b = dpsm_project(b);
+    let disk_c = dpsm_project(c);
+    let ab = disk_b - disk_a;
+    let bc = disk_c - disk_b;
+    let ca = disk_a - disk_c;
+    let squares = vec3<f32>(dot(ab, ab), dot(bc, bc), dot(ca, ca));
+    let longest = max(max(squares.x, squares.y), squares.z);
+    if !(longest <= DPSM_TRIANGLE_CHORD * DPSM_TRIANGLE_CHORD) {
+        return vec3<f32>();
+    }
+    var start = disk_a;
+    var along = ab;
+    if squares.y == longest {
+        start = disk_b;
+        along = bc;
+    } else if squares.z == longest {
+        start = disk_c;
+        along = ca;
+    }
+    let size = sqrt(longest);
+    let margin = DPSM_TRIANGLE_MARGIN * dpsm_texel_width(light.size, light.guard);
+    let reach = 0.5 * size + (margin + DPSM_EDGE_ROUNDING);
+    let scaled = along / (max(size, 0x1p-60) * reach);
+    return vec3<f32>(scaled, -dot(scaled, start + 0.5 * along));
 }
 
 /// True where a disk point is inside the three edges, an edge itself included. Neighbours agree on
 /// which side of an edge a point is, but close to a vertex rounding may put it on the wrong side of
-/// two edges: within DPSM_EDGE_ROUNDING of both it is inside.
+/// two edges: within DPSM_EDGE_ROUNDING of both it is inside, unless beyond the triangle's span.
 ///
 /// Domain: r <= 4. A decision: exact but for points that close to an edge.
 fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
@@ -341,7 +389,9 @@ fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
     let high = max(first, second);
     let lowest = min(low, third);
     let middle = max(low, min(high, third));
-    return lowest >= 0.0 || (lowest >= -DPSM_EDGE_ROUNDING && middle <= DPSM_EDGE_ROUNDING);
+    let inside =
+        lowest >= 0.0 || (lowest >= -DPSM_EDGE_ROUNDING && middle <= DPSM_EDGE_ROUNDING);
+    return inside && abs(dot(triangle.span, vec3<f32>(uv, 1.0))) <= 1.0;
 }
 
 /// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
@@ -416,7 +466,7 @@ struct DpsmHull {
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: a triangle around the whole map.
 /// Domain: as for dpsm_triangle_plane. It holds every point that dpsm_triangle_covers
-/// accepts, but for the tips of needles beyond the margin.
+/// accepts.
 fn dpsm_triangle_hull(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmHull {
     let disk_a = dpsm_project(a);
     let disk_b = dpsm_project(b);

@@ -144,6 +144,22 @@ fn sagitta_stays_within_its_bound() {
 }
 
 #[test]
+fn bow_stays_within_its_bound() {
+    let mut rng = rng("bow");
+    let mut worst = Worst::default();
+    for _ in 0..CASES {
+        let ([a, b], light) = (edge(&mut rng), sized(&mut rng));
+        let (from, to) = (a.widen(), b.widen());
+        if (dpsm_project_own(to) - dpsm_project_own(from)).length() <= 1.0 {
+            let exact = dpsm_edge_bow(from, to, light.widen());
+            let error = f64::from(dpsm_edge_bow(a, b, light)) - exact;
+            worst.note(error.abs(), 14.0 * EPS, (a, b));
+        }
+    }
+    worst.check("dpsm_edge_bow");
+}
+
+#[test]
 fn choice_of_the_chord_is_the_same_in_both_maps_and_both_directions() {
     let mut rng = rng("choice");
     let mut flat = 0;

@@ -79,6 +79,7 @@ pub fn add(function: &str, cases: &mut Cases) {
             cases.each(EDGES, |e| (ends(e), (light, TAU)));
             cases.each(&EDGES[..1], |e| (ends(e), (light, 1e3)));
         }
+        "dpsm_edge_bow" => cases.each(EDGES, |e| (ends(e), light)),
         "dpsm_edge_terms" => cases.each(super::DISKS, disk),
         "dpsm_triangle_plane" => cases.each(TRIANGLES, corners),
         "dpsm_triangle" => cases.each(TRIANGLES, |t| (corners(t), (light, TAU))),
@@ -91,7 +92,9 @@ pub fn add(function: &str, cases: &mut Cases) {
         }
         "dpsm_triangle_fragment" => cases.each(TRIANGLES, |t| (prepared(t), at, light, 0.01)),
         "dpsm_triangle_weights" => cases.each(TRIANGLES, |t| (corners(t), at)),
-        "dpsm_triangle_hull" => cases.each(TRIANGLES, |t| (corners(t), light)),
+        "dpsm_triangle_hull" | "dpsm_triangle_span" => {
+            cases.each(TRIANGLES, |t| (corners(t), light));
+        }
         "dpsm_triangle_tip" => {
             let sines = [("right angle", 1.0), ("narrow", 1.0 / 64.0), ("none", 0.0)];
             cases.each(&sines, |y| (Vec2::new(1.0, 0.0), Vec2::new(0.5, y), 0.01, 0.02));

@@ -14,7 +14,7 @@ use crate::scalar::paraboloid::dpsm_texel_width;
 use crate::scalar::tessellate::{dpsm_tessellate_point, dpsm_tessellate_weights};
 use crate::scalar::triangle::{
     dpsm_triangle, dpsm_triangle_disk, dpsm_triangle_distance, dpsm_triangle_fragment,
-    dpsm_triangle_hull, dpsm_triangle_weights,
+    dpsm_triangle_hull, dpsm_triangle_span, dpsm_triangle_weights,
 };
 
 /// The maps store true distances; the bias is the receiver's, so that it may differ by receiver.
@@ -198,11 +198,12 @@ impl Target<'_> {
     fn curved(&mut self, index: u32, corners: [Vec3<f32>; 3], tau: f32, path: Option<u32>) {
         let Frame { light, settings, .. } = self.frame;
         let [a, b, c] = corners;
-        let prepared = dpsm_triangle(a, b, c, *light, tau);
+        let mut prepared = dpsm_triangle(a, b, c, *light, tau);
         let rim = 1.0 + light.guard;
         let hull = match path {
             Some(path) => {
                 let part = dpsm_classify_part(a, b, c, path);
+                prepared.span = dpsm_triangle_span(part.a, part.b, part.c, *light);
                 let hull = dpsm_triangle_hull(part.a, part.b, part.c, *light);
                 [hull.a, hull.b, hull.c]
             }

@@ -23,11 +23,11 @@ pub const DRAW_BYTES: u64 = 32;
 /// triangles are drawn by hulls around the whole map.
 const EXTRA: u64 = 1 << 17;
 
-/// Bytes of a listed triangle's indices, of a part's entry, and of what is prepared of it (six
-/// vec4).
+/// Bytes of a listed triangle's indices, of a part's entry, and of what is prepared of it
+/// (seven vec4).
 const INDEX_BYTES: u64 = 12;
 const ENTRY_BYTES: u64 = 8;
-const RECORD_BYTES: u64 = 96;
+const RECORD_BYTES: u64 = 112;
 
 /// Bytes of a steep triangle's plane and number.
 const PLANE_BYTES: u64 = 32;

@@ -63,13 +63,17 @@ pub fn dpsm_edge_sagitta<T: Float>(normal_z: T, chord: Vec2<T>) -> T {
     quarter * normal_z / (one + (one - square).max(T::lit(0.0)).sqrt())
 }
 
+/// How far from an edge's arc its chord may be drawn, in disk units.
+pub fn dpsm_edge_bow<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>) -> T {
+    let chord = dpsm_project_own(b) - dpsm_project_own(a);
+    let snap = T::lit(DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
+    snap + dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord).abs()
+}
+
 /// True where an edge may be drawn as its chord.
 pub fn dpsm_edge_flat<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>, tau: T) -> bool {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let sagitta = dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord).abs();
-    let limit =
-        (T::lit(0.9375) * tau - T::lit(DPSM_EDGE_SNAP)) * dpsm_texel_width(light.size, light.guard);
-    sagitta <= limit && a.z * b.z >= T::lit(0.0)
+    let limit = T::lit(0.9375) * tau * dpsm_texel_width(light.size, light.guard);
+    dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= T::lit(0.0)
 }
 
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
@@ -89,10 +93,12 @@ pub fn dpsm_edge_line<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>, tau
     if !dpsm_edge_flat(a, b, light, tau) {
         return (normal * half).extend(zero);
     }
-    let texel = dpsm_texel_width(light.size, light.guard);
-    // the second order has a sixteenth of tau left; behind the seam this map's sagitta is larger
-    let most = select(tau, T::lit(4.0) * tau, a.z + b.z < zero);
     // the chord is on the right of an arc that bows to the left
-    let chord = select(T::lit(DPSM_EDGE_SNAP), most, normal.z < zero) * texel;
-    (normal * half).extend(chord)
+    if normal.z >= zero {
+        let snap = T::lit(DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
+        return (normal * half).extend(snap);
+    }
+    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
+    let most = select(T::lit(16.0 / 15.0), T::lit(64.0 / 15.0), a.z + b.z < zero);
+    (normal * half).extend(most * dpsm_edge_bow(a, b, light))
 }

@@ -105,7 +105,7 @@ flat! {
     DpsmCasterFragment { depth, keep }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
-    DpsmTriangle { first, second, third, plane }
+    DpsmTriangle { first, second, third, plane, span }
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
 }
@@ -211,12 +211,12 @@ ports! {
     }
     edge {
         dpsm_edge_largest, dpsm_edge_unit, dpsm_edge_ordered, dpsm_edge_normal,
-        dpsm_edge_sagitta, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_line,
+        dpsm_edge_sagitta, dpsm_edge_bow, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_line,
     }
     triangle {
-        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_covers, dpsm_triangle_distance,
-        dpsm_triangle_disk, dpsm_triangle_fragment, dpsm_triangle_weights, dpsm_triangle_hull,
-        dpsm_triangle_tip, dpsm_triangle_needle,
+        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_covers,
+        dpsm_triangle_distance, dpsm_triangle_disk, dpsm_triangle_fragment,
+        dpsm_triangle_weights, dpsm_triangle_hull, dpsm_triangle_tip, dpsm_triangle_needle,
     }
     classify {
         dpsm_classify_usable, dpsm_classify, dpsm_classify_flat_error, dpsm_classify_distance,

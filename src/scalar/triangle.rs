@@ -21,6 +21,8 @@ pub struct DpsmTriangle<T> {
     pub third: Vec4<T>,
     /// Normal times largest distance over height, and the largest distance of a vertex.
     pub plane: Vec4<T>,
+    /// Its extent along its longest chord.
+    pub span: Vec3<T>,
 }
 
 /// Smallest height that is told from 0, as a share of the largest distance.
@@ -81,7 +83,46 @@ pub fn dpsm_triangle<T: Float>(
         second: dpsm_edge_line(second, third, light, tau),
         third: dpsm_edge_line(third, a, light, tau),
         plane: (outward * (farthest / height)).extend(farthest),
+        span: dpsm_triangle_span(a, b, c, light),
     }
+}
+
+/// The extent of a triangle along its longest chord: a disk point is between the ends where
+/// |span . (u, v, 1)| <= 1.
+pub fn dpsm_triangle_span<T: Float>(
+    a: Vec3<T>,
+    b: Vec3<T>,
+    c: Vec3<T>,
+    light: DpsmLight<T>,
+) -> Vec3<T> {
+    let half = T::lit(0.5);
+    let disk_a = dpsm_project(a);
+    let disk_b = dpsm_project(b);
+    let disk_c = dpsm_project(c);
+    let ab = disk_b - disk_a;
+    let bc = disk_c - disk_b;
+    let ca = disk_a - disk_c;
+    let squares = Vec3::new(ab.dot(ab), bc.dot(bc), ca.dot(ca));
+    let longest = squares.x.max(squares.y).max(squares.z);
+    let small = longest <= T::lit(DPSM_TRIANGLE_CHORD * DPSM_TRIANGLE_CHORD);
+    if !small {
+        return Vec3::splat(T::lit(0.0));
+    }
+    let mut start = disk_a;
+    let mut along = ab;
+    if squares.y == longest {
+        start = disk_b;
+        along = bc;
+    } else if squares.z == longest {
+        start = disk_c;
+        along = ca;
+    }
+    let size = longest.sqrt();
+    let margin = T::lit(DPSM_TRIANGLE_MARGIN) * dpsm_texel_width(light.size, light.guard);
+    let reach = half * size + (margin + T::lit(DPSM_EDGE_ROUNDING));
+    let smallest = T::lit(1.0 / (1u64 << 60) as f64);
+    let scaled = along / (size.max(smallest) * reach);
+    Vec3::new(scaled.x, scaled.y, -scaled.dot(start + along * half))
 }
 
 /// True where a disk point is inside the three edges, an edge itself included, or within rounding
@@ -96,7 +137,9 @@ pub fn dpsm_triangle_covers<T: Float>(triangle: DpsmTriangle<T>, uv: Vec2<T>) ->
     let lowest = low.min(third);
     let middle = low.max(high.min(third));
     let rounding = T::lit(DPSM_EDGE_ROUNDING);
-    lowest >= T::lit(0.0) || (lowest >= -rounding && middle <= rounding)
+    let inside = lowest >= T::lit(0.0) || (lowest >= -rounding && middle <= rounding);
+    let one = T::lit(1.0);
+    inside && triangle.span.dot(Vec3::new(uv.x, uv.y, one)).abs() <= one
 }
 
 /// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest

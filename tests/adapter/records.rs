@@ -37,7 +37,7 @@ pub fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
             ("a", 3) => corner_a.write(&mut words),
             ("b", 3) => corner_b.write(&mut words),
             ("c", 3) => corner_c.write(&mut words),
-            ("triangle", 16) => {
+            ("triangle", 19) => {
                 let light = light(rng);
                 dpsm_triangle(corner_a, corner_b, corner_c, light, rng.f32()).write(&mut words);
             }

@@ -1,6 +1,8 @@
 //! Coverage, distance and hulls of triangles against rays and planes in f64: docs/triangle.md.
 
+#[path = "../common/mod.rs"]
 mod common;
+mod span;
 
 use common::exact::{about, direction, inside, meet, triangle};
 use common::{CASES, EPS, Worst, light, nearby, rng, spread, uniform, unit};
