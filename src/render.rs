@@ -145,9 +145,11 @@ impl Frame {
         }
         check("the camera's eye", camera.eye)?;
         check("the camera's target", camera.target)?;
-        if settings.method == Method::Cube {
-            check_cube(&settings)?;
+        if settings.method == Method::Cube && settings.lookup == Lookup::Vertex {
+            let remedy = "--lookup pixel";
+            return Err(FrameError::Cube { what: "lookup by vertex", remedy });
         }
+        settings.check_passes()?;
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
@@ -255,17 +257,6 @@ fn check(what: &'static str, value: Vec3) -> Result<(), FrameError> {
     match value.abs().max_element() <= LARGEST && value.is_finite() {
         true => Ok(()),
         false => Err(FrameError::Range { what, value }),
-    }
-}
-
-/// What a cube's maps cannot do.
-fn check_cube(settings: &Settings) -> Result<(), FrameError> {
-    if settings.lookup == Lookup::Vertex {
-        return Err(FrameError::Cube { what: "lookup by vertex", remedy: "--lookup pixel" });
-    }
-    match settings.passes {
-        Passes::Atlas => Err(FrameError::Cube { what: "atlas", remedy: "--passes single" }),
-        Passes::Single => Ok(()),
     }
 }
 

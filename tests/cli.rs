@@ -187,6 +187,8 @@ fn bad_settings_are_refused() {
     let cube = |extra: &[&'static str]| [&with(&["--method", "cube"])[..], extra].concat();
     refused("lookup", &cube(&["--lookup", "vertex"]), &["lookup by vertex", "--lookup pixel"]);
     refused("atlas", &cube(&["--passes", "atlas"]), &["atlas", "--passes single"]);
+    refused("views", &with(&["--passes", "multiview"]), &["hybrid", "--passes atlas", "vertex"]);
+    refused("cube-views", &cube(&["--passes", "multiview"]), &["multiview", "--passes single"]);
     refused("passes", &with(&["--passes", "double"]), &["--passes", "atlas"]);
     refused("level", &with(&["--level", "0"]), &["--level", "1..=64"]);
     refused("method-name", &with(&["--method", "vertx"]), &["vertex"]);

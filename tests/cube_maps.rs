@@ -314,4 +314,6 @@ fn what_a_cube_does_not_have_is_refused() {
     assert!(matches!(lookup, FrameError::Cube { what: "lookup by vertex", .. }), "{lookup}");
     let atlas = made(Settings { passes: Passes::Atlas, ..settings() }).unwrap_err();
     assert!(matches!(atlas, FrameError::Cube { what: "atlas", .. }), "{atlas}");
+    let multiview = made(Settings { passes: Passes::Multiview, ..settings() }).unwrap_err();
+    assert!(matches!(multiview, FrameError::Cube { what: "multiview", .. }), "{multiview}");
 }

@@ -380,8 +380,7 @@ MUTATIONS = [
      "adapter", "values_far_apart_in_one_struct_keep_their_places"),
     ("src/gpu/texels.wesl", "row % size.y", "size.y - 1u - row % size.y",
      "adapter", "depths_survive_upload_and_download_in_each_format"),
-    ("src/gpu/caster.wesl", "map_pass.light), map_pass.hemisphere);",
-     "map_pass.light), 1u - map_pass.hemisphere);",
+    ("src/gpu/caster.wesl", "map_pass.light), hemisphere());", "map_pass.light), 1u - hemisphere());",
      "render", "adapter_renders_what_the_ports_render"),
     ("src/gpu/camera.wesl", "fn pixel_lookup(v: Vertex) -> Surface {\n    let p = dpsm_to_light(v.position, camera.light);",
      "fn pixel_lookup(v: Vertex) -> Surface {\n    let p = dpsm_to_light(v.position, camera.light).yxz;",
@@ -556,7 +555,7 @@ MUTATIONS = [
      "maps", "rim::stored_disk_is_full_up_to_its_border_and_empty_beyond"),
     ("wgsl/triangle.wesl", "let keep = stored && dpsm_triangle_covers", "let keep = dpsm_triangle_covers",
      "maps", "rim::stored_disk_is_full_up_to_its_border_and_empty_beyond"),
-    ("src/gpu/maps.rs", "pass.set_viewport(map as f32 * size, 0.0", "pass.set_viewport(map as f32 * size + 1.0, 0.0",
+    ("src/gpu/maps/record.rs", "pass.set_viewport(map as f32 * size, 0.0", "pass.set_viewport(map as f32 * size + 1.0, 0.0",
      "maps", "same::maps_side_by_side_are_those_one_by_one"),
     ("src/gpu/maps.rs", "first: chunk.start,", "first: 0 * chunk.start,",
      "maps", "many::many_chunks_make_the_maps_of_one"),
@@ -566,6 +565,22 @@ MUTATIONS = [
      "maps", "bad_input::indices_out_of_range_are_refused_by_name_and_else_harmless"),
     ("src/render/extent.rs", "frame.vertices.get(index as usize).map(|vertex| vertex.position)", "Some(frame.vertices[index as usize].position)",
      "maps", "bad_input::indices_out_of_range_are_refused_by_name_and_else_harmless"),
+    ("src/gpu/maps.rs", "frame.settings.check_passes()?;", "",
+     "maps", "bad_input::multiview_is_refused_by_the_methods_that_have_none"),
+    ("src/gpu/multiview.rs", "Some(&views) if views > limit.max(1) =>", "Some(&views) if views > 32 =>",
+     "maps", "many::multiview_beyond_the_adapters_views_is_refused_by_name"),
+    ("src/gpu/multiview.rs", "Passes::Multiview => light.hemispheres.max(1),", "Passes::Multiview => 2,",
+     "maps", "many::multiview_beyond_the_adapters_views_is_refused_by_name"),
+    # on lavapipe, whose multiview is wrong
+    ("src/gpu/multiview.rs", "match is_stored(back) && !is_stored(front) {", "match true {",
+     "maps", "same::maps_by_multiview_are_those_one_by_one"),
+    # on SwiftShader, as tools/test runs it
+    ("src/gpu/multiview.rs", '" view = view_index;"', '" view = 0u;"',
+     "maps", "same::maps_by_multiview_are_those_one_by_one"),
+    ("src/gpu/maps/record.rs", "(self.method != Method::Cube && self.views[number] == 1)", "(self.method != Method::Cube)",
+     "maps", "same::maps_by_multiview_are_those_one_by_one"),
+    ("src/gpu/maps.rs", "layers_view(&texture, layer, views);", "layers_view(&texture, layer - layer % 2, views);",
+     "maps", "same::lights_with_two_maps_and_with_one_share_a_texture_by_multiview"),
 ]
 
 

@@ -181,13 +181,14 @@ fn ratios(device: &Device) -> Result<(), GpuError> {
         };
         let cube = |cull_faces| Settings { cull_faces, ..settings(Method::Cube) };
         let atlas = |method| Settings { passes: Passes::Atlas, ..settings(method) };
+        let views = |method| Settings { passes: Passes::Multiview, ..settings(method) };
         // a mesh that reaches from near the light to far away would be cut into a hundred million
         let level = match place.scene.name.as_str() {
             "sponza" => Level::Constant(2),
             _ => Level::Mesh(64),
         };
         let tessellated = Settings { level, ..settings(Method::Tessellated) };
-        let variants = [
+        let mut variants = vec![
             make("vertex", settings(Method::Vertex), Parts::ALL)?,
             make("vertex, one pass", atlas(Method::Vertex), Parts::ALL)?,
             make("fragment-depth", settings(Method::FragmentDepth), Parts::ALL)?,
@@ -201,6 +202,17 @@ fn ratios(device: &Device) -> Result<(), GpuError> {
             make("cube, faces culled, lists kept", cube(true), KEPT)?,
             make("cube, faces culled each frame", cube(true), Parts::ALL)?,
         ];
+        // last, as not every adapter has it
+        for (name, settings) in [
+            ("vertex, multiview", views(Method::Vertex)),
+            ("fragment-depth, multiview", views(Method::FragmentDepth)),
+            ("tessellated, multiview", Settings { level, ..views(Method::Tessellated) }),
+        ] {
+            match make(name, settings, Parts::ALL) {
+                Ok(variant) => variants.push(variant),
+                Err(error) => println!("\n{name}: {error}"),
+            }
+        }
         let times = time(device, &mesh, &variants, RUNS)?;
         println!("\n{}\n\n| method | ms | of vertex | of cube | of culled cube |", place.name);
         println!("|---|---|---|---|---|");

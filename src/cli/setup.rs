@@ -106,6 +106,8 @@ enum PassesName {
     Single,
     /// All maps of a light in one pass, side by side in one layer
     Atlas,
+    /// All maps of a light in one pass, one layer each: vertex, fragment-depth, tessellated
+    Multiview,
 }
 
 /// Parses a tolerance in texels.
@@ -190,6 +192,7 @@ impl SetupArguments {
             passes: match self.passes {
                 PassesName::Single => Passes::Single,
                 PassesName::Atlas => Passes::Atlas,
+                PassesName::Multiview => Passes::Multiview,
             },
             lookup,
             sampling: match self.filter {

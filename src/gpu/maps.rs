@@ -4,11 +4,16 @@ mod record;
 
 pub use record::Parts;
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use super::lists::{By, Lists, Sorter};
 use super::mesh::MeshBuffers;
-use super::passes::{MapPass, PASS_BYTES, bind, depth_texture, layer_view, pipelines};
+use super::multiview::{try_views, views};
+use super::passes::{
+    MapPass, PASS_BYTES, bind, depth_texture, layers_view, map_bindings, pipelines,
+};
 use super::texels::Texels;
 use super::{Device, GpuError};
 use crate::render::{Format, Frame, Method, Passes};
@@ -27,13 +32,16 @@ pub struct ShadowMaps {
     pub lights: Vec<DpsmLight<f32>>,
     method: Method,
     levels: Vec<Vec<u32>>,
-    layers: Vec<wgpu::TextureView>,
+    /// Views of each light's passes, and what each pass draws into.
+    views: Vec<u32>,
+    targets: Vec<wgpu::TextureView>,
     chunks: Vec<Range<u32>>,
     passes: Vec<MapPass>,
     sorter: Option<Sorter>,
     /// One for each light and chunk where they are kept, else one.
     sets: Vec<Set>,
-    pipelines: Vec<wgpu::RenderPipeline>,
+    /// By the number of views in a pass.
+    pipelines: BTreeMap<u32, Vec<wgpu::RenderPipeline>>,
 }
 
 /// Lists and what binds them.
@@ -68,8 +76,24 @@ impl ShadowMaps {
         mesh: &MeshBuffers,
         lights: &[DpsmLight<f32>],
     ) -> Result<Self, GpuError> {
+        frame.settings.check_passes()?;
+        let maps = Self::untried(device, frame, mesh, lights)?;
+        if maps.views.iter().any(|&views| views > 1) {
+            try_views(device)?;
+        }
+        Ok(maps)
+    }
+
+    /// As `with_lights`, trusting the settings and the driver.
+    pub(super) fn untried(
+        device: &Device,
+        frame: &Frame,
+        mesh: &MeshBuffers,
+        lights: &[DpsmLight<f32>],
+    ) -> Result<Self, GpuError> {
         let settings = &frame.settings;
         let method = settings.method;
+        let views = views(device, lights, settings.passes)?;
         let (lights, side) = placed(lights, settings.passes);
         let layers = lights.iter().map(layers_of).sum();
         let size = settings.map_size();
@@ -107,7 +131,13 @@ impl ShadowMaps {
                 size: wgpu::BufferSize::new(size_of::<MapPass>() as u64),
             })
         };
-        let (pipelines, layout) = pipelines(device, method, settings.format)?;
+        let layout = map_bindings(device)?;
+        let mut by_views = BTreeMap::new();
+        for &views in &views {
+            if let Entry::Vacant(vacant) = by_views.entry(views) {
+                vacant.insert(pipelines(device, &layout, method, settings.format, views)?);
+            }
+        }
         let sorter = by.map(|by| Sorter::new(device, by)).transpose()?;
         let kept =
             if settings.keep_lists && by.is_some() { lights.len() * chunks.len() } else { 1 };
@@ -132,7 +162,12 @@ impl ShadowMaps {
             Ok(Set { lists, sorting, drawing })
         };
         let sets = (0..kept).map(set).collect::<Result<_, GpuError>>()?;
-        let layers = (0..layers).map(|layer| layer_view(&texture, layer)).collect();
+        let mut targets = Vec::new();
+        for (light, &views) in lights.iter().zip(&views) {
+            let own = light.first_layer..light.first_layer + layers_of(light);
+            let target = |layer| layers_view(&texture, layer, views);
+            targets.extend(own.step_by(views as usize).map(target));
+        }
         let view = texture.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
@@ -143,12 +178,13 @@ impl ShadowMaps {
             lights,
             method,
             levels,
-            layers,
+            views,
+            targets,
             chunks,
             passes,
             sorter,
             sets,
-            pipelines,
+            pipelines: by_views,
         })
     }
 
@@ -188,7 +224,7 @@ fn layers_of(light: &DpsmLight<f32>) -> u32 {
 fn placed(lights: &[DpsmLight<f32>], passes: Passes) -> (Vec<DpsmLight<f32>>, u32) {
     let side = match passes {
         Passes::Atlas => lights.iter().map(|light| light.hemispheres).max().unwrap_or(1),
-        Passes::Single => 1,
+        Passes::Single | Passes::Multiview => 1,
     };
     let mut layer = 0;
     let place = |&light: &DpsmLight<f32>| {

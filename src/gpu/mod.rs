@@ -5,6 +5,7 @@ mod evaluate;
 mod lists;
 mod maps;
 mod mesh;
+mod multiview;
 mod passes;
 mod texels;
 mod timer;
@@ -81,6 +82,16 @@ pub enum GpuError {
         asked: u64,
         /// The largest allowed.
         limit: u64,
+    },
+    /// Multiview on an adapter that does not have it, or not as it should be.
+    #[error(
+        "no multiview on adapter `{adapter}`: {reason}; choose --passes atlas or --passes single"
+    )]
+    Multiview {
+        /// The adapter's name.
+        adapter: String,
+        /// What is missing or wrong.
+        reason: String,
     },
     /// A type that the evaluator cannot move.
     #[error("`{function}` cannot be evaluated: {reason}")]
@@ -168,9 +179,10 @@ impl Device {
     /// Opens a device on a given adapter, with limits that it has or lower ones.
     pub fn with_limits(adapter: &wgpu::Adapter, limits: wgpu::Limits) -> Result<Self, GpuError> {
         let info = adapter.get_info();
+        let useful = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MULTIVIEW;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("dpsm"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & useful,
             required_limits: limits,
             ..Default::default()
         };

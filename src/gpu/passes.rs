@@ -1,6 +1,7 @@
 //! The pipelines of the map passes, and helpers for bindings and depth attachments.
 
 use super::mesh::{POSITION_LAYOUT, SURFACE_LAYOUT};
+use super::multiview::{multiview_text, view_mask};
 use super::{Device, GpuError};
 use crate::link::link_source;
 use crate::render::{Format, Method};
@@ -68,30 +69,37 @@ fn stages(method: Method) -> &'static [Stages] {
     }
 }
 
-/// The pipelines of a method, and the layout of what they bind.
+/// The layout of what the map passes bind.
+pub fn map_bindings(device: &Device) -> Result<wgpu::BindGroupLayout, GpuError> {
+    let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
+    let mut entries = vec![uniform_entry(visibility)];
+    entries.extend((1..8).map(|i| storage(i, true, visibility)));
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("maps"), entries: &entries };
+    device.step("the map bindings", || device.device.create_bind_group_layout(&descriptor))
+}
+
+/// The pipelines of a method, for passes of so many views.
 pub fn pipelines(
     device: &Device,
+    bindings: &wgpu::BindGroupLayout,
     method: Method,
     format: Format,
-) -> Result<(Vec<wgpu::RenderPipeline>, wgpu::BindGroupLayout), GpuError> {
+    views: u32,
+) -> Result<Vec<wgpu::RenderPipeline>, GpuError> {
     let text =
         concat!(include_str!("caster.wesl"), include_str!("pass.wesl"), include_str!("mask.wesl"));
-    let module = shader(device, "caster.wesl", text)?;
+    let module = match views {
+        1 => shader(device, "caster.wesl", text)?,
+        _ => shader(device, "caster.wesl for multiview", &multiview_text(text))?,
+    };
     device.step("the map pipelines", || {
-        let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        let mut entries = vec![uniform_entry(visibility)];
-        entries.extend((1..8).map(|i| storage(i, true, visibility)));
-        let bindings = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("maps"),
-            entries: &entries,
-        });
         let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("maps"),
-            bind_group_layouts: &[Some(&bindings)],
+            bind_group_layouts: &[Some(bindings)],
             immediate_size: 0,
         });
-        let make = |stages: &Stages| pipeline(device, &module, &layout, *stages, format);
-        (stages(method).iter().map(make).collect(), bindings)
+        let make = |stages: &Stages| pipeline(device, &module, &layout, *stages, format, views);
+        stages(method).iter().map(make).collect()
     })
 }
 
@@ -101,6 +109,7 @@ fn pipeline(
     layout: &wgpu::PipelineLayout,
     (vertex, fragment, reads): Stages,
     format: Format,
+    views: u32,
 ) -> wgpu::RenderPipeline {
     let buffers: &[_] = match reads {
         Reads::Positions => &[Some(POSITION_LAYOUT)],
@@ -125,7 +134,7 @@ fn pipeline(
             compilation_options: Default::default(),
             targets: &[],
         }),
-        multiview_mask: None,
+        multiview_mask: view_mask(views),
         cache: None,
     })
 }
@@ -196,12 +205,16 @@ pub fn depth_texture(
     })
 }
 
-/// One layer, to draw into.
-pub fn layer_view(texture: &wgpu::Texture, layer: u32) -> wgpu::TextureView {
+/// Some layers, to draw into: one alone, or one a view.
+pub fn layers_view(texture: &wgpu::Texture, first: u32, count: u32) -> wgpu::TextureView {
+    let dimension = match count {
+        1 => wgpu::TextureViewDimension::D2,
+        _ => wgpu::TextureViewDimension::D2Array,
+    };
     texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2),
-        base_array_layer: layer,
-        array_layer_count: Some(1),
+        dimension: Some(dimension),
+        base_array_layer: first,
+        array_layer_count: Some(count),
         ..Default::default()
     })
 }

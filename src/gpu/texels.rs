@@ -1,7 +1,7 @@
 //! Depth textures from and to arrays, for formats that cannot be copied.
 
 use super::passes::{
-    depth_attachment, depth_state, depth_texture, layer_view, shader, uniform_buffer,
+    depth_attachment, depth_state, depth_texture, layers_view, shader, uniform_buffer,
 };
 use super::{Device, GpuError};
 use crate::render::Format;
@@ -106,7 +106,7 @@ impl Texels {
                 }],
             });
             for layer in 0..maps.layers {
-                let view = layer_view(&texture, layer);
+                let view = layers_view(&texture, layer, 1);
                 let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                     label: Some("upload"),
                     depth_stencil_attachment: Some(depth_attachment(&view, 1.0)),

@@ -115,6 +115,11 @@ pub enum FrameError {
         /// What it has.
         remedy: &'static str,
     },
+    /// Multiview by a method that has a list of triangles for each map.
+    #[error(
+        "the exact and hybrid methods draw a list of triangles for each map, so they have no multiview; choose --passes atlas, or --method vertex, fragment-depth or tessellated"
+    )]
+    Multiview,
     /// The camera looks nowhere.
     #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
     Camera(Vec3),

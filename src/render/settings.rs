@@ -1,6 +1,6 @@
 //! What a rendering may vary, and what follows from it.
 
-use super::guard_band;
+use super::{FrameError, guard_band};
 use crate::scalar::maps::Sampling;
 
 /// Storage of a depth map.
@@ -68,6 +68,9 @@ pub enum Passes {
     Single,
     /// All maps of a light in one pass, side by side in one layer.
     Atlas,
+    /// All maps of a light in one pass, one layer each, on adapters that have multiview; for the
+    /// methods that draw all triangles into each map: `Vertex`, `FragmentDepth`, `Tessellated`.
+    Multiview,
 }
 
 /// Where receivers find their texture coordinates.
@@ -161,6 +164,19 @@ impl Settings {
         match self.method {
             Method::Cube => (self.size / 2).max(1),
             _ => self.size,
+        }
+    }
+
+    /// Refuses passes that the method does not have.
+    pub(crate) fn check_passes(&self) -> Result<(), FrameError> {
+        let remedy = "--passes single";
+        match (self.passes, self.method) {
+            (Passes::Atlas, Method::Cube) => Err(FrameError::Cube { what: "atlas", remedy }),
+            (Passes::Multiview, Method::Cube) => {
+                Err(FrameError::Cube { what: "multiview", remedy })
+            }
+            (Passes::Multiview, Method::Exact | Method::Hybrid) => Err(FrameError::Multiview),
+            _ => Ok(()),
         }
     }
 

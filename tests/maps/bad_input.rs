@@ -1,6 +1,7 @@
 //! Input that is wrong: none hangs, panics, or stores what is not a depth.
 
-use dpsm::render::{Frame, FrameError, Level, Method, Settings};
+use dpsm::gpu::GpuError;
+use dpsm::render::{Frame, FrameError, Level, Method, Passes, Settings};
 use dpsm::scalar::maps::DepthMaps;
 use dpsm::scene::Mesh;
 use dpsm::{cpu, gpu};
@@ -152,4 +153,25 @@ fn level_too_large_is_refused_by_adapter_and_ports() {
     let Some(device) = device() else { return };
     let refused = gpu::make_maps(&device, &frame).unwrap_err().to_string();
     assert!(refused.contains("level 1048576") && refused.contains("--level"), "{refused}");
+}
+
+#[test]
+fn multiview_is_refused_by_the_methods_that_have_none() {
+    let scene = built_in("seam-box");
+    let position = scene.default_light().position;
+    for method in [Method::Exact, Method::Hybrid, Method::Cube] {
+        let passes = Passes::Multiview;
+        let settings = Settings { passes, ..small(method) };
+        let made = Frame::new(&scene, position, Vec3::NEG_Y, false, &CAMERA, settings).unwrap_err();
+        let message = made.to_string();
+        assert!(message.contains("multiview") && message.contains("--passes"), "{message}");
+        // and where the settings were changed past that check
+        let mut frame = frame(&scene, position, small(method));
+        frame.settings.passes = passes;
+        let Some(device) = device() else { continue };
+        match gpu::make_maps(&device, &frame) {
+            Err(GpuError::Frame(error)) => assert_eq!(error, made),
+            other => panic!("{other:?}"),
+        }
+    }
 }

@@ -1,7 +1,8 @@
 //! More triangles than fit at once, and more than fit at all.
 
-use dpsm::gpu::{self, Device};
-use dpsm::render::{Method, Settings};
+use dpsm::gpu::{self, Device, GpuError};
+use dpsm::render::{Method, Passes, Settings};
+use dpsm::scalar::light::DPSM_HEMISPHERICAL;
 use dpsm::scene;
 use glam::{Vec3, vec3};
 
@@ -9,13 +10,18 @@ use crate::support::{device, differing, frame, is_whole, mesh, scene_of, setting
 
 /// The same adapter with smaller buffers.
 fn limited(bytes: u64) -> Device {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let limits = |adapter: &wgpu::Adapter| wgpu::Limits {
+    with(|limits| wgpu::Limits {
         max_storage_buffer_binding_size: bytes,
         max_buffer_size: bytes,
-        ..adapter.limits()
-    };
+        ..limits
+    })
+}
+
+/// The same adapter with other limits.
+fn with(change: impl Fn(wgpu::Limits) -> wgpu::Limits) -> Device {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let limits = |adapter: &wgpu::Adapter| change(adapter.limits());
     let open = |adapter: &wgpu::Adapter| Device::with_limits(adapter, limits(adapter)).ok();
     adapters.iter().find_map(open).unwrap()
 }
@@ -64,4 +70,20 @@ fn ten_million_triangles_are_drawn_in_chunks() {
         Ok(maps) => assert!(is_whole(&maps) && stored(&maps) > 10_000, "{}", stored(&maps)),
         Err(error) => assert!(error.to_string().contains("bytes"), "{error}"),
     }
+}
+
+#[test]
+fn multiview_beyond_the_adapters_views_is_refused_by_name() {
+    let Some(_alone) = device() else { return };
+    let scene = scene::crowd(100);
+    let settings = Settings { method: Method::Vertex, passes: Passes::Multiview, ..settings() };
+    let mut frame = frame(&scene, scene.default_light().position, settings);
+    let limited = with(|limits| wgpu::Limits { max_multiview_view_count: 0, ..limits });
+    let refused = gpu::make_maps(&limited, &frame).unwrap_err();
+    assert!(matches!(refused, GpuError::Multiview { .. }), "{refused}");
+    let message = refused.to_string();
+    assert!(message.contains("at most 0 views") && message.contains("--passes atlas"), "{message}");
+    // one map needs none
+    frame.light.hemispheres = DPSM_HEMISPHERICAL;
+    assert!(stored(&gpu::make_maps(&limited, &frame).unwrap()) > 0);
 }

@@ -1,12 +1,13 @@
 //! What must not change the maps: how they are drawn, kept and cut into chunks.
 
-use dpsm::gpu::{self, Device, MeshBuffers, Parts, ShadowMaps, Texels};
+use dpsm::cpu;
+use dpsm::gpu::{self, Device, GpuError, MeshBuffers, Parts, ShadowMaps, Texels};
 use dpsm::render::{Frame, Method, Passes, Settings};
-use dpsm::scalar::light::DpsmLight;
+use dpsm::scalar::light::{DPSM_HEMISPHERICAL, DpsmLight};
 use dpsm::scene::Scene;
 
 use crate::common::rng;
-use crate::support::{built_in, device, differing, frame, place, settings, turn};
+use crate::support::{Adapter, built_in, device, differing, frame, place, settings, stored, turn};
 
 const METHODS: [Method; 3] = [Method::Vertex, Method::Exact, Method::Hybrid];
 
@@ -36,6 +37,68 @@ fn maps_side_by_side_are_those_one_by_one() {
         println!("{method:?}: {} differ, {apart} by more than 24 eps", differing(&single, &atlas));
         assert_eq!(apart, 0, "{method:?}");
     }
+}
+
+/// The methods that draw all triangles into each map.
+const MULTIVIEW: [Method; 3] = [Method::Vertex, Method::FragmentDepth, Method::Tessellated];
+
+/// The adapter, if it has multiview and no fault of it that is known; else a line says why not.
+fn multiview() -> Option<Adapter> {
+    let device = device()?;
+    let settings = Settings { method: Method::Vertex, passes: Passes::Multiview, ..settings() };
+    let has = device.device.features().contains(wgpu::Features::MULTIVIEW);
+    match gpu::make_maps(&device, &make(&built_in("seam-box"), settings)) {
+        Ok(_) => Some(device),
+        // docs/maps.md says what is wrong with lavapipe's
+        Err(error @ GpuError::Multiview { .. }) if !has || device.info.driver == "llvmpipe" => {
+            println!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn maps_by_multiview_are_those_one_by_one() {
+    let Some(device) = multiview() else { return };
+    // the second with masks, the third with the far sphere within the room
+    for (name, far) in [("seam-box", None), ("fence", None), ("brabec-room", Some(3.0))] {
+        let scene = built_in(name);
+        for method in MULTIVIEW {
+            let [single, multiview] = [Passes::Single, Passes::Multiview].map(|passes| {
+                let frame = make(&scene, Settings { method, passes, far, ..settings() });
+                gpu::make_maps(&device, &frame).unwrap()
+            });
+            assert_eq!(differing(&single, &multiview), 0, "{name}, {method:?}");
+            assert!(stored(&multiview) > 10_000, "{name}, {method:?}");
+        }
+    }
+}
+
+#[test]
+fn lights_with_two_maps_and_with_one_share_a_texture_by_multiview() {
+    let Some(device) = multiview() else { return };
+    let scene = built_in("seam-box");
+    for method in MULTIVIEW {
+        let mut frame = make(&scene, Settings { method, size: 64, ..settings() });
+        let one = DpsmLight { hemispheres: DPSM_HEMISPHERICAL, ..frame.light };
+        let lights = [frame.light, one, frame.light, one];
+        let single = layers(&device, &frame, &lights, false);
+        frame.settings.passes = Passes::Multiview;
+        assert!(layers(&device, &frame, &lights, false) == single, "{method:?}");
+    }
+}
+
+#[test]
+fn ports_make_the_same_maps_whatever_the_passes() {
+    let scene = built_in("seam-box");
+    let [single, atlas, multiview] =
+        [Passes::Single, Passes::Atlas, Passes::Multiview].map(|passes| {
+            let settings = Settings { method: Method::Vertex, size: 64, passes, ..settings() };
+            cpu::make_maps(&make(&scene, settings)).unwrap()
+        });
+    assert!(stored(&single) > 1000);
+    assert_eq!([differing(&single, &atlas), differing(&single, &multiview)], [0, 0]);
 }
 
 /// All layers of the maps of some lights.

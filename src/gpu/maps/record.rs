@@ -5,9 +5,11 @@ use std::ops::Range;
 use super::{Set, ShadowMaps, layers_of};
 use crate::gpu::lists::{CURVED, DRAW_BYTES, FLAT, MASKED, STEEP, STRADDLING};
 use crate::gpu::mesh::MeshBuffers;
+use crate::gpu::multiview::view_mask;
 use crate::gpu::passes::{MapPass, PASS_BYTES, depth_attachment};
 use crate::gpu::timer::{Ends, Stamps, render_writes};
 use crate::render::Method;
+use crate::scalar::light::DPSM_ATLAS;
 
 /// What to record of the maps' making. Drawing without sorting needs lists that were kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,9 +52,11 @@ impl ShadowMaps {
     ) {
         let sorter = self.sorter.as_ref().filter(|_| parts.sort);
         let jobs = self.lights.len() * self.chunks.len();
-        let (mut layer, mut at) = (0, 0);
+        let (mut target, mut at) = (0, 0);
         for (number, light) in self.lights.iter().enumerate() {
             let maps = light.hemispheres as usize;
+            let views = self.views[number];
+            let targets = (layers_of(light) / views) as usize;
             for (chunk, triangles) in self.chunks.iter().enumerate() {
                 let job = number * self.chunks.len() + chunk;
                 let (first, last) = (job == 0, job + 1 == jobs);
@@ -67,20 +71,17 @@ impl ShadowMaps {
                 if !parts.draw {
                     continue;
                 }
-                let attachments = layers_of(light) as usize;
-                for attachment in 0..attachments {
+                for pass_number in 0..targets {
                     let ends = Ends {
-                        first: first && sorter.is_none() && attachment == 0,
-                        last: last && attachment + 1 == attachments,
+                        first: first && sorter.is_none() && pass_number == 0,
+                        last: last && pass_number + 1 == targets,
                     };
-                    let view = &self.layers[layer + attachment];
-                    let mut pass = begin(encoder, view, chunk == 0, stamps, ends);
-                    let drawn = match attachments == maps {
-                        true => attachment..attachment + 1,
-                        false => 0..maps,
-                    };
+                    let view = &self.targets[target + pass_number];
+                    let mut pass = begin(encoder, (view, views), chunk == 0, stamps, ends);
+                    let is_atlas = light.placement == DPSM_ATLAS;
+                    let drawn = if is_atlas { 0..maps } else { pass_number..pass_number + 1 };
                     for map in drawn {
-                        if attachments != maps {
+                        if is_atlas {
                             let size = light.size;
                             pass.set_viewport(map as f32 * size, 0.0, size, size, 0.0, 1.0);
                             let side = size as u32;
@@ -92,7 +93,7 @@ impl ShadowMaps {
                 }
             }
             at += maps * self.chunks.len();
-            layer += layers_of(light) as usize;
+            target += targets;
         }
     }
 
@@ -106,6 +107,10 @@ impl ShadowMaps {
         parts: Parts,
     ) {
         let MapPass { light, hemisphere, first, triangles, first_masked, .. } = self.passes[at];
+        let pipelines = &self.pipelines[&self.views[number]];
+        // each view of multiview draws what any of them sees
+        let seen_from =
+            (self.method != Method::Cube && self.views[number] == 1).then_some(hemisphere);
         pass.set_bind_group(0, &set.drawing, &[(at * PASS_BYTES) as u32]);
         let chunk = first..first + triangles;
         let within = |range: Range<u32>, low: u32, high: u32| {
@@ -120,73 +125,71 @@ impl ShadowMaps {
                 pass.set_vertex_buffer(0, mesh.positions.slice(..));
                 pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);
                 if parts.flat {
-                    pass.set_pipeline(&self.pipelines[0]);
+                    pass.set_pipeline(&pipelines[0]);
                     pass.draw_indexed_indirect(draws, (FLAT + map) * DRAW_BYTES);
-                    pass.set_pipeline(&self.pipelines[1]);
+                    pass.set_pipeline(&pipelines[1]);
                     pass.draw_indirect(draws, STRADDLING * DRAW_BYTES);
                 }
                 if parts.steep {
-                    pass.set_pipeline(&self.pipelines[2]);
+                    pass.set_pipeline(&pipelines[2]);
                     pass.draw_indirect(draws, (STEEP + map) * DRAW_BYTES);
                 }
                 if parts.curved {
-                    pass.set_pipeline(&self.pipelines[3]);
+                    pass.set_pipeline(&pipelines[3]);
                     pass.draw_indirect(draws, (CURVED + map) * DRAW_BYTES);
                     if first_masked < mesh.triangles {
-                        pass.set_pipeline(&self.pipelines[4]);
+                        pass.set_pipeline(&pipelines[4]);
                         pass.draw_indirect(draws, (MASKED + map) * DRAW_BYTES);
                     }
                 }
             }
             Method::Cube if self.sorter.is_some() => {
-                pass.set_pipeline(&self.pipelines[0]);
+                pass.set_pipeline(&pipelines[0]);
                 pass.set_vertex_buffer(0, mesh.positions.slice(..));
                 pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);
                 pass.draw_indexed_indirect(draws, u64::from(hemisphere) * DRAW_BYTES);
-                self.draw_ranges(pass, 1, mesh, [masked(chunk)]);
+                draw_ranges(pass, &pipelines[1], mesh, [masked(chunk)]);
             }
             Method::Tessellated => {
                 let seen = mesh.meshes.iter().zip(&self.levels[number]);
-                for (extent, &level) in seen.filter(|(m, _)| m.is_seen(&light, Some(hemisphere))) {
+                for (extent, &level) in seen.filter(|(m, _)| m.is_seen(&light, seen_from)) {
                     let is_masked = extent.triangles.start >= first_masked;
-                    pass.set_pipeline(&self.pipelines[usize::from(is_masked)]);
+                    pass.set_pipeline(&pipelines[usize::from(is_masked)]);
                     let each = 3 * level * level;
                     let Range { start, end } = extent.triangles;
                     pass.draw(start * each..end * each, level..level + 1);
                 }
             }
             _ => {
-                let hemisphere = (self.method != Method::Cube).then_some(hemisphere);
-                let seen = mesh.seen(&light, hemisphere);
-                self.draw_ranges(pass, 0, mesh, seen.iter().cloned().map(opaque));
-                self.draw_ranges(pass, 1, mesh, seen.iter().cloned().map(masked));
+                let seen = mesh.seen(&light, seen_from);
+                draw_ranges(pass, &pipelines[0], mesh, seen.iter().cloned().map(opaque));
+                draw_ranges(pass, &pipelines[1], mesh, seen.iter().cloned().map(masked));
             }
-        }
-    }
-
-    fn draw_ranges(
-        &self,
-        pass: &mut wgpu::RenderPass<'_>,
-        pipeline: usize,
-        mesh: &MeshBuffers,
-        ranges: impl IntoIterator<Item = Range<u32>>,
-    ) {
-        for range in ranges.into_iter().filter(|range| !range.is_empty()) {
-            pass.set_pipeline(&self.pipelines[pipeline]);
-            mesh.draw_range(pass, range, 0);
         }
     }
 }
 
-/// Begins the pass into one layer; cleared unless an earlier chunk drew into it.
+fn draw_ranges(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    mesh: &MeshBuffers,
+    ranges: impl IntoIterator<Item = Range<u32>>,
+) {
+    for range in ranges.into_iter().filter(|range| !range.is_empty()) {
+        pass.set_pipeline(pipeline);
+        mesh.draw_range(pass, range, 0);
+    }
+}
+
+/// Begins the pass into a layer, or into one a view; cleared unless an earlier chunk drew there.
 fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
-    view: &wgpu::TextureView,
+    (target, views): (&wgpu::TextureView, u32),
     clear: bool,
     stamps: Stamps<'_>,
     ends: Ends,
 ) -> wgpu::RenderPass<'e> {
-    let mut attachment = depth_attachment(view, 1.0);
+    let mut attachment = depth_attachment(target, 1.0);
     if !clear {
         let (load, store) = (wgpu::LoadOp::Load, wgpu::StoreOp::Store);
         attachment.depth_ops = Some(wgpu::Operations { load, store });
@@ -195,6 +198,7 @@ fn begin<'e>(
         label: Some("map"),
         depth_stencil_attachment: Some(attachment),
         timestamp_writes: render_writes(stamps, ends),
+        multiview_mask: view_mask(views),
         ..Default::default()
     })
 }
