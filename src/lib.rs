@@ -1,7 +1,7 @@
 //! Point-light shadows from dual-paraboloid maps.
 //!
 //! The product is `wgsl/`: composable WGSL modules. [`MODULES`] holds their text and needs no
-//! dependency. [`scalar`] holds the same functions in Rust. With the feature `naga`, [`link`]
+//! dependency. [`scalar`] holds the same functions in Rust. With the feature `naga`, [`mod@link`]
 //! makes one plain WGSL text of the modules that a shader imports and [`mod@validate`] checks it;
 //! with `gpu`, [`gpu`] evaluates any of the functions on an adapter and renders; `cli` adds the
 //! program `dpsm`.

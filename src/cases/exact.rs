@@ -83,9 +83,10 @@ pub fn add(function: &str, cases: &mut Cases) {
         "dpsm_edge_terms" => cases.each(super::DISKS, disk),
         "dpsm_triangle_plane" => cases.each(TRIANGLES, corners),
         "dpsm_triangle" => cases.each(TRIANGLES, |t| (corners(t), (light, TAU))),
-        "dpsm_triangle_covers" | "dpsm_triangle_distance" => {
+        "dpsm_triangle_inside" | "dpsm_triangle_covers" | "dpsm_triangle_distance" => {
             cases.each(TRIANGLES, |t| (prepared(t), at));
         }
+        "dpsm_triangle_behind" => cases.each(TRIANGLES, |t| (prepared(t), 0.75_f32)),
         "dpsm_triangle_disk" => {
             let positions = [("first texel", 0.5), ("middle", 256.0), ("last", 511.5)];
             cases.each(&positions, |x| (Vec2::new(x, 10.5), Vec2::splat(256.0), 1.0 / 252.0));

@@ -214,8 +214,8 @@ ports! {
         dpsm_edge_sagitta, dpsm_edge_bow, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_line,
     }
     triangle {
-        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_covers,
-        dpsm_triangle_distance, dpsm_triangle_disk, dpsm_triangle_fragment,
+        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_inside,
+        dpsm_triangle_covers, dpsm_triangle_distance, dpsm_triangle_behind, dpsm_triangle_disk, dpsm_triangle_fragment,
         dpsm_triangle_weights, dpsm_triangle_hull, dpsm_triangle_tip, dpsm_triangle_needle,
     }
     classify {

@@ -3,8 +3,8 @@
 use super::caster::DpsmCasterFragment;
 use super::depth::{dpsm_depth, dpsm_within};
 use super::edge::{
-    DPSM_EDGE_ROUNDING, dpsm_edge_largest, dpsm_edge_line, dpsm_edge_normal, dpsm_edge_sagitta,
-    dpsm_edge_terms, dpsm_edge_unit,
+    DPSM_EDGE_NEAREST, DPSM_EDGE_ROUNDING, dpsm_edge_largest, dpsm_edge_line, dpsm_edge_normal,
+    dpsm_edge_sagitta, dpsm_edge_terms, dpsm_edge_unit,
 };
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::light::DpsmLight;
@@ -125,6 +125,13 @@ pub fn dpsm_triangle_span<T: Float>(
     Vec3::new(scaled.x, scaled.y, -scaled.dot(start + along * half))
 }
 
+/// How far a disk point is inside the nearest of the three edges.
+pub fn dpsm_triangle_inside<T: Float>(triangle: DpsmTriangle<T>, uv: Vec2<T>) -> T {
+    let terms = dpsm_edge_terms(uv);
+    let low = triangle.first.dot(terms).min(triangle.second.dot(terms));
+    low.min(triangle.third.dot(terms))
+}
+
 /// True where a disk point is inside the three edges, an edge itself included, or within rounding
 /// of two of them.
 pub fn dpsm_triangle_covers<T: Float>(triangle: DpsmTriangle<T>, uv: Vec2<T>) -> bool {
@@ -155,6 +162,15 @@ pub fn dpsm_triangle_disk<T: Float>(position: Vec2<T>, middle: Vec2<T>, texel: T
     (position - middle) * Vec2::new(texel, -texel)
 }
 
+/// A distance on a triangle's plane where rounding alone has it cover a point outside: behind what
+/// rounding may have brought it forward.
+pub fn dpsm_triangle_behind<T: Float>(triangle: DpsmTriangle<T>, l: T) -> T {
+    let farthest = triangle.plane.w.max(T::lit(DPSM_EDGE_NEAREST));
+    let steepness = l * triangle.plane.xyz().length() / farthest;
+    let share = T::lit(1.0) - T::lit(2.0 * DPSM_EDGE_ROUNDING) * steepness;
+    (l / share.max(T::lit(DPSM_EDGE_NEAREST))).min(triangle.plane.w)
+}
+
 /// The fragment of a prepared triangle at uv: its depth, and whether it is kept.
 pub fn dpsm_triangle_fragment<T: Float>(
     triangle: DpsmTriangle<T>,
@@ -163,7 +179,10 @@ pub fn dpsm_triangle_fragment<T: Float>(
     bias: T,
 ) -> DpsmCasterFragment<T> {
     let one = T::lit(1.0);
-    let l = dpsm_triangle_distance(triangle, uv);
+    let mut l = dpsm_triangle_distance(triangle, uv);
+    if dpsm_triangle_inside(triangle, uv) < T::lit(0.0) {
+        l = dpsm_triangle_behind(triangle, l);
+    }
     let stored = uv.dot(uv) <= (one + light.guard) * (one + light.guard);
     let keep = stored && dpsm_triangle_covers(triangle, uv);
     let depth = dpsm_depth(l, light.near, light.far) + bias;

@@ -133,7 +133,10 @@ fn fragments_are_cut_by_the_disk_and_the_spheres_and_carry_the_depth() {
         let Some(uv) = on_disk(about(&mut rng, [a, b, c].map(Vec3::widen))) else { continue };
         let (t, bias) = (dpsm_triangle(a, b, c, light, 0.0), rng.f32());
         let fragment = dpsm_triangle_fragment(t, uv, light, bias);
-        let l = dpsm_triangle_distance(t, uv);
+        let mut l = dpsm_triangle_distance(t, uv);
+        if dpsm_triangle_inside(t, uv) < 0.0 {
+            l = dpsm_triangle_behind(t, l);
+        }
         assert_eq!(fragment.depth, dpsm_depth(l, light.near, light.far) + bias);
         let r = uv.widen().length();
         let rim = 1.0 + f64::from(light.guard);
