@@ -38,6 +38,13 @@ struct DpsmLight {
 /// in |p| can underflow.
 const DPSM_SMALLEST: f32 = 0x1p-51;
 
+/// The width of a texel of an N x N map (size = N) on the disk: 2 (1 + guard) / N.
+///
+/// Domain: size >= 1, 0 <= guard <= 1. Bound: 3.5 eps relative.
+fn dpsm_texel_width(size: f32, guard: f32) -> f32 {
+    return 2.0 * (1.0 + guard) / size;
+}
+
 /// Disk coordinates to texture coordinates, 0.5 + 0.5 (u, -v) / (1 + guard): the stored disk
 /// r <= 1 + guard fills [0, 1], with texture coordinate y pointing down.
 ///
@@ -69,6 +76,33 @@ struct DpsmLookup {
     mapped: bool,
 }
 
+// dpsm::bias
+
+/// A receiver: its plane and its distance.
+struct DpsmReceiver {
+    /// Unit normal in light space, not flipped, turned so that the height is not below 0, and the
+    /// height normal . p.
+    plane: vec4<f32>,
+    /// |p|.
+    distance: f32,
+}
+
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 64 eps, 32 for each (docs/bias.md).
+const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
+
+/// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
+/// map. Looked up at dpsm_disk_to_texture of it, that texel is the one that is read, whatever the
+/// rounding at its borders.
+///
+/// Domain: r <= 2^63, whole size from 1 to 2^20. Bound: 6 eps (1 + guard) absolute off a centre;
+/// a point within 3 eps of the map's side of a border may be counted to either texel.
+fn dpsm_texel_centre(uv: vec2<f32>, light: DpsmLight) -> vec2<f32> {
+    let st = dpsm_disk_to_texture(uv, light.guard);
+    let texel = clamp(floor(st * light.size), vec2<f32>(), vec2<f32>(light.size - 1.0));
+    return dpsm_texture_to_disk((texel + 0.5) / light.size, light.guard);
+}
+
 // dpsm::cube
 /// Cube maps, to compare with: six 90-degree perspective faces of light space, one layer a face.
 ///
@@ -84,6 +118,13 @@ const DPSM_CUBE_FACES: u32 = 6u;
 /// 1 and 16 eps: what dpsm_cube_outside adds to a face's half-extent, so that rounding here and in
 /// dpsm_cube_vertex together never cull a triangle that a face stores.
 const DPSM_CUBE_REACH: f32 = 1.0 + 0x1p-19;
+
+/// What rounding adds to a stored depth, over far / (far - near), for each (far + near) / z:
+/// 5.5 eps (docs/cube.md).
+const DPSM_CUBE_STORED: f32 = 0x1.6p-21;
+
+/// The same to a stored depth's own rounding and to a receiver's depth: 12 eps.
+const DPSM_CUBE_OWN: f32 = 0x1.8p-20;
 
 /// The face of a light-space point, by its largest component: 0 to 5 for +x, -x, +y, -y, +z, -z.
 /// Of equal ones z wins over y and x, and y over x; the light's own position is +z.
@@ -187,6 +228,93 @@ fn dpsm_cube_lookup(p: vec3<f32>, light: DpsmLight) -> DpsmLookup {
         face,
         true,
     );
+}
+
+/// dpsm_bias_slack for a cube: what is left of the bias where the same direction is compared, in
+/// units of the stored depth, at the distance z along a face's axis.
+///
+/// Domain: 0 < near < far <= 2^62, z >= near. Bound: 8 eps relative.
+fn dpsm_cube_slack(z: f32, light: DpsmLight, quantum: f32) -> f32 {
+    let steps = DPSM_CUBE_STORED * ((light.far + light.near) / max(z, light.near)) + DPSM_CUBE_OWN;
+    return quantum + steps * (light.far / (light.far - light.near));
+}
+
+/// dpsm_lookup_along_centre for a cube: the depth along the centre of the receiver's texel, of its
+/// plane up to the distance `limit`, less the slack.
+///
+/// limit: far, or the receiver's own distance as in dpsm_lookup_texel_centre_or_own.
+/// Domain: as dpsm_cube_lookup, |p| <= 2^62. A lit plane is never shadowed by itself.
+fn dpsm_cube_lookup_along_centre(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    limit: f32,
+    light: DpsmLight,
+    quantum: f32,
+) -> DpsmLookup {
+    var at = dpsm_cube_lookup(p, light);
+    let v = dpsm_cube_view(p, at.hemisphere);
+    let centre = dpsm_texel_centre(v.xy / max(v.z, DPSM_SMALLEST), light);
+    at.coordinates = dpsm_disk_to_texture(centre, light.guard);
+    let direction = vec3<f32>(centre, 1.0);
+    let l = length(direction);
+    let facing = dot(receiver.plane.xyz, dpsm_cube_unview(direction, at.hemisphere));
+    let leaned = max(facing, 0.0) + DPSM_RECEIVER_ROUNDING * l;
+    // beyond the plane's horizon only what is nearer than the receiver can shadow it
+    let there = min(receiver.plane.w / leaned, limit / l);
+    let z = select(receiver.distance / l, there, facing > 0.0);
+    at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
+    return at;
+}
+
+/// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
+/// slack. Along a face's axis a plane is at h / (n . (x, y, 1)), so it is nearest in a corner.
+///
+/// Domain: as dpsm_cube_lookup_texel_centre, texels >= 0. A lit plane is never shadowed by itself at
+/// any texel of the window.
+fn dpsm_cube_lookup_footprint(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    texels: f32,
+    light: DpsmLight,
+    quantum: f32,
+) -> DpsmLookup {
+    let normal = abs(dpsm_cube_view(receiver.plane.xyz, dpsm_cube_face(p)).xy);
+    let side = texels * dpsm_texel_width(light.size, light.guard);
+    return dpsm_cube_lookup_rising(p, receiver.plane.w, side * (normal.x + normal.y), light, quantum);
+}
+
+/// The same without a normal, for incidences whose cosine is at least the given one.
+///
+/// Domain: as dpsm_cube_lookup_footprint, 0 <= cosine <= 1.
+fn dpsm_cube_lookup_without_normal(
+    p: vec3<f32>,
+    cosine: f32,
+    texels: f32,
+    light: DpsmLight,
+    quantum: f32,
+) -> DpsmLookup {
+    // the normal's part across the axis is at most 1 long, and may point to a corner
+    let side = texels * dpsm_texel_width(light.size, light.guard);
+    let rise = length(vec2<f32>(side));
+    return dpsm_cube_lookup_rising(p, cosine * length(p), rise, light, quantum);
+}
+
+/// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
+/// rises by so much from where the point is, less the slack.
+///
+/// height: of the plane. Domain: as dpsm_cube_lookup_footprint, height and rise >= 0.
+fn dpsm_cube_lookup_rising(
+    p: vec3<f32>,
+    height: f32,
+    rise: f32,
+    light: DpsmLight,
+    quantum: f32,
+) -> DpsmLookup {
+    var at = dpsm_cube_lookup(p, light);
+    let own = max(dpsm_cube_view(p, at.hemisphere).z, DPSM_SMALLEST);
+    let z = own * (height / (height + rise * own + DPSM_RECEIVER_ROUNDING * length(p)));
+    at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
+    return at;
 }
 
 /// The shadow test for each pixel: 1 lit, 0 in shadow; the sampler compares with less-equal.

@@ -1,6 +1,7 @@
 //! Named hard cases: inputs at which a function is most likely to go wrong. Tests and `dpsm eval`
 //! share them.
 
+mod bias;
 mod exact;
 
 use crate::scalar::float::{Vec2, Vec3, Vec4};
@@ -169,7 +170,10 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_lambert" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light))),
         "dpsm_highlight" => cases.each(DIRECTIONS, |to_light| (unit, point(to_light), unit)),
-        _ => exact::add(function, &mut cases),
+        _ => {
+            bias::add(function, &mut cases);
+            exact::add(function, &mut cases);
+        }
     }
     cases.0
 }

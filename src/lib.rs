@@ -63,7 +63,7 @@ macro_rules! modules {
 }
 modules! {
     "light" "hemisphere" "paraboloid" "depth" "caster" "tessellate" "edge" "triangle" "classify"
-    "visibility" "cube" "shade"
+    "visibility" "bias" "cube" "shade"
 }
 
 /// The module of that name.

@@ -10,7 +10,7 @@ pub use error::FrameError;
 pub use extent::Extent;
 pub use projection::{Projection, texel};
 pub use settings::{
-    Format, Level, Lookup, Method, Passes, Settings, constant_bias, depth_tolerance,
+    Bias, Format, Level, Lookup, Method, Passes, Settings, constant_bias, depth_tolerance,
 };
 
 use std::ops::Range;
@@ -20,8 +20,10 @@ use glam::{DVec3, Vec2, Vec3};
 
 use crate::scalar::cube::{DPSM_CUBE_FACES, dpsm_cube_guard};
 use crate::scalar::float as scalar;
+use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
 use crate::scalar::maps::DepthMaps;
+use crate::scalar::triangle::dpsm_triangle_plane;
 use crate::scene::{Camera, Mask, Scene};
 use meshes::Meshes;
 
@@ -78,7 +80,7 @@ pub struct Frame {
     pub light: DpsmLight<f32>,
     /// The light's linear colour.
     pub color: Vec3,
-    /// Constant bias in units of depth, at the receiver.
+    /// The constant bias in units of depth, at the receiver, where that is what is taken.
     pub bias: f32,
     /// The camera.
     pub view: View,
@@ -153,9 +155,18 @@ impl Frame {
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
-        let bias = settings.bias.unwrap_or_else(|| constant_bias(settings.size, settings.format));
+        let constant = constant_bias(settings.size, settings.format);
+        let bias = match settings.bias {
+            Bias::Constant(Some(bias)) => bias,
+            _ => constant,
+        };
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
+        }
+        if let Bias::WithoutNormal(cosine) = settings.bias
+            && !(0.0..=1.0).contains(&cosine)
+        {
+            return Err(FrameError::Cosine(cosine));
         }
         let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
         let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
@@ -196,6 +207,23 @@ impl Frame {
         let view = View::new(camera, settings.image)?;
         let color = Vec3::ONE;
         Ok(Self { vertices, triangles, meshes, masks, light, color, bias, view, settings })
+    }
+}
+
+impl Frame {
+    /// The constant bias, where it is what is taken.
+    pub fn constant_bias(&self) -> Option<f32> {
+        matches!(self.settings.bias_taken(), Bias::Constant(_)).then_some(self.bias)
+    }
+
+    /// A triangle's unit normal in light space, of either side; zero without area or corners.
+    pub fn light_normal(&self, triangle: u32) -> scalar::Vec3<f32> {
+        let none = scalar::Vec3::splat(0.0);
+        let Some(corners) = self.triangles.get(triangle as usize) else { return none };
+        let corner = |index: u32| self.vertices.get(index as usize);
+        let [Some(a), Some(b), Some(c)] = corners.map(corner) else { return none };
+        let [a, b, c] = [a, b, c].map(|v| dpsm_to_light(float(v.position), self.light));
+        dpsm_triangle_plane(a, b, c).xyz()
     }
 }
 

@@ -11,9 +11,11 @@ use common::{device, rng, unit};
 use dpsm::gpu::{Device, Evaluator, GpuError, Resources, Texels, comparison_sampler};
 use dpsm::reflect::Kind;
 use dpsm::render::Format;
+use dpsm::scalar::bias::*;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::light::{DPSM_LAYERS, DpsmLight};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
+use dpsm::scalar::paraboloid::dpsm_project_own;
 use dpsm::scalar::ports::{self, Flat, PORTS, Word};
 use dpsm::scalar::visibility::*;
 use dpsm::ulp::ulps_apart;
@@ -56,7 +58,15 @@ fn ports_and_modules_declare_the_same_functions_in_the_same_order() {
         {
             assert_eq!(names(module.text, wgsl), names(&port, rust), "{}", module.name);
         }
-        let sampling = ["dpsm_visibility", "dpsm_visibility_vertex", "dpsm_cube_visibility"];
+        let sampling = [
+            "dpsm_visibility",
+            "dpsm_visibility_vertex",
+            "dpsm_visibility_texel_centre",
+            "dpsm_visibility_texel_centre_or_own",
+            "dpsm_visibility_footprint",
+            "dpsm_visibility_without_normal",
+            "dpsm_cube_visibility",
+        ];
         let listed = PORTS.iter().filter(|(name, _)| *name == module.name);
         let listed: Vec<_> = listed.map(|(_, function)| *function).collect();
         let declared = names(module.text, "fn ");
@@ -247,18 +257,23 @@ fn sampling_functions_agree_with_their_ports() {
             (light, 0.001_f32).write(&mut words);
             words
         };
-        let check = |function: &str, records: Vec<Vec<Word<f32>>>, port: &dyn Fn(usize) -> f32| {
+        // where the function looks, and the depth that it compares
+        type Looks<'a> = &'a dyn Fn(usize) -> DpsmLookup<f32>;
+        let check = |function: &str,
+                     records: Vec<Vec<Word<f32>>>,
+                     looks: Looks<'_>,
+                     port: &dyn Fn(usize) -> f32| {
             let words: Vec<u32> = records.iter().flatten().map(|&word| bits(word)).collect();
             let evaluator = Evaluator::new(&device, function).unwrap();
             let answers = evaluator.run(&words, Some(resources)).unwrap().words;
             let (mut compared, mut lit) = (0, 0);
             for (i, (&p, answer)) in points.iter().zip(&answers).enumerate() {
-                let at = dpsm_lookup(p, light);
+                let at = looks(i);
                 let texel = at.coordinates * size as f32;
                 let stored = maps.depths[maps.index(texel.x as i64, texel.y as i64, at.layer)];
                 // a depth within one quantum of the stored one may compare either way
                 let quantum = format.quantum().max(f32::EPSILON);
-                let clear = (at.depth - 0.001 - stored).abs() > quantum;
+                let clear = (at.depth - stored).abs() > quantum;
                 if clear_of_borders(at.coordinates, size) && clear {
                     compared += 1;
                     lit += usize::from(port(i) == 1.0);
@@ -268,12 +283,69 @@ fn sampling_functions_agree_with_their_ports() {
             println!("{function} {format:?}: {compared} of {INPUTS} compared, {lit} lit");
             assert!(compared > INPUTS * 9 / 10 && lit > INPUTS / 10 && lit < compared * 9 / 10);
         };
-        check("dpsm_visibility", points.iter().map(by_pixel).collect(), &|i| {
+        let plain = |i: usize| {
+            let at = dpsm_lookup(points[i], light);
+            DpsmLookup { depth: at.depth - 0.001, ..at }
+        };
+        check("dpsm_visibility", points.iter().map(by_pixel).collect(), &plain, &|i| {
             dpsm_visibility(&maps, points[i], light, 0.001)
         });
-        check("dpsm_visibility_vertex", points.iter().map(by_vertex).collect(), &|i| {
+        check("dpsm_visibility_vertex", points.iter().map(by_vertex).collect(), &plain, &|i| {
             dpsm_visibility_vertex(&maps, dpsm_receiver_vertex(points[i], light), light, 0.001)
         });
+        let normals: Vec<Vec3<f32>> = (0..INPUTS).map(|_| unit(&mut rng)).collect();
+        let receiver = |i: usize| dpsm_receiver(points[i], normals[i]);
+        let (quantum, tolerance) = (format.quantum(), 1e-3_f32);
+        let records = |rest: &dyn Fn(usize, &mut Vec<Word<f32>>)| -> Vec<Vec<Word<f32>>> {
+            let record = |i: usize| {
+                let mut words = Vec::new();
+                points[i].write(&mut words);
+                rest(i, &mut words);
+                words
+            };
+            (0..INPUTS).map(record).collect()
+        };
+        check(
+            "dpsm_visibility_texel_centre",
+            records(&|i, words| (receiver(i), light, quantum, tolerance).write(words)),
+            &|i| dpsm_lookup_texel_centre(points[i], receiver(i), light, quantum, tolerance),
+            &|i| {
+                let (p, receiver) = (points[i], receiver(i));
+                dpsm_visibility_texel_centre(&maps, p, receiver, light, quantum, tolerance)
+            },
+        );
+        let footprint = |i: usize| {
+            let uv = dpsm_project_own(points[i]);
+            dpsm_bias_footprint(receiver(i), uv, 0.5, light)
+        };
+        check(
+            "dpsm_visibility_footprint",
+            records(&|i, words| {
+                (receiver(i), light, 0.5_f32).write(words);
+                (quantum, tolerance).write(words);
+            }),
+            &|i| dpsm_lookup_biased(points[i], footprint(i), light, quantum, tolerance),
+            &|i| {
+                let (p, receiver) = (points[i], receiver(i));
+                dpsm_visibility_footprint(&maps, p, receiver, light, 0.5, quantum, tolerance)
+            },
+        );
+        let without_normal = |i: usize| {
+            let uv = dpsm_project_own(points[i]);
+            dpsm_bias_without_normal(points[i].length(), 0.1, uv, 0.5, light)
+        };
+        check(
+            "dpsm_visibility_without_normal",
+            records(&|_, words| {
+                (0.1_f32, light, 0.5_f32).write(words);
+                (quantum, tolerance).write(words);
+            }),
+            &|i| dpsm_lookup_biased(points[i], without_normal(i), light, quantum, tolerance),
+            &|i| {
+                let p = points[i];
+                dpsm_visibility_without_normal(&maps, p, 0.1, light, 0.5, quantum, tolerance)
+            },
+        );
     }
 }
 

@@ -174,7 +174,8 @@ fn bad_settings_are_refused() {
     refused("picture", &["render", "cornell", "-o", "out.jpg"], &["out.jpg", "PNG"]);
     refused("near", &with(&["--near", "-1"]), &["near -1"]);
     refused("filter", &with(&["--filter", "pcss"]), &["--filter pcss is not built yet"]);
-    refused("bias", &with(&["--bias", "footprint"]), &["--bias footprint is not built yet"]);
+    let two = ["--bias", "footprint", "--constant-bias", "0.01"];
+    refused("bias", &with(&two), &["--constant-bias is for --bias constant, not footprint"]);
     refused("light-text", &with(&["--light", "1,2"]), &["--light", "three numbers"]);
     refused("light-range", &with(&["--light", "1e39,0,0"]), &["1e39", "float range"]);
     refused("light-huge", &with(&["--light", "1e30,0,0"]), &["light", "1e18"]);

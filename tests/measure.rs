@@ -9,7 +9,7 @@ mod scenes;
 use common::EPS;
 use dpsm::cpu;
 use dpsm::measure::*;
-use dpsm::render::{Format, Frame, Method, Settings};
+use dpsm::render::{Bias, Format, Frame, Method, Settings};
 use dpsm::scalar::depth::dpsm_depth;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::Mesh;
@@ -250,7 +250,8 @@ fn measures_of_a_box_agree_with_its_closed_form() {
 
 #[test]
 fn faults_are_sorted_by_seam_angle_and_bias() {
-    let frame = half_covered(Settings { near: Some(0.5), far: Some(5.0), ..settings() });
+    let bias = Bias::Constant(None);
+    let frame = half_covered(Settings { near: Some(0.5), far: Some(5.0), bias, ..settings() });
     let truth = truth_of(&frame);
     // a texel stores the cover just in front of the receiver: the bias alone lights it
     let mut maps = exact_maps(&frame, &truth);
@@ -284,8 +285,13 @@ fn faults_are_sorted_by_seam_angle_and_bias() {
 
 #[test]
 fn contact_gap_is_the_distance_to_the_occluder_that_the_bias_forgives() {
-    let settings =
-        Settings { near: Some(0.5), far: Some(6.0), bias: Some(0.4), size: 512, ..settings() };
+    let settings = Settings {
+        near: Some(0.5),
+        far: Some(6.0),
+        bias: Bias::Constant(Some(0.4)),
+        size: 512,
+        ..settings()
+    };
     let frame = half_covered(settings);
     let truth = truth_of(&frame);
     let maps = exact_maps(&frame, &truth);

@@ -8,9 +8,8 @@ mod common;
 use common::device;
 use dpsm::cpu::{self, SurfacePoint};
 use dpsm::gpu::{self, Device};
-use dpsm::render::{Format, Frame, Lookup, Method, Picture, Rendering, Settings};
-use dpsm::scalar::maps::DepthMaps;
-use dpsm::scalar::visibility::dpsm_lookup;
+use dpsm::render::{Bias, Format, Frame, Lookup, Method, Picture, Rendering, Settings};
+use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Options};
 use glam::Vec3;
 
@@ -68,19 +67,19 @@ fn comparable(
         near(y).flat_map(move |y| near(x).map(move |x| (y * SIDE + x) as usize))
     };
     let here = (y * SIDE + x) as usize;
-    let Some(SurfacePoint { triangle, p }) = seen[here] else { return false };
+    let Some(point @ SurfacePoint { triangle, .. }) = seen[here] else { return false };
     let one_triangle = around(x, y).all(|i| seen[i].is_some_and(|seen| seen.triangle == triangle));
     // a pixel's neighbours bound its gradient: an image shifted by SUBPIXEL stays within half a
     // level where they are within 8
     let smooth = around(x, y)
         .all(|i| levels_apart(port.lit.pixels[i], port.lit.pixels[here]) <= (0.5 / SUBPIXEL) as u8);
-    one_triangle && smooth && port.maps.as_ref().is_some_and(|maps| decided(frame, maps, p))
+    one_triangle && smooth && port.maps.as_ref().is_some_and(|maps| decided(frame, maps, point))
 }
 
 /// True where all 3 x 3 texels around a point's lookup agree, by more than their depths can move
 /// when the map's triangles do by SUBPIXEL, and the arithmetic's bounds (24 eps on unit depths).
-fn decided(frame: &Frame, maps: &DepthMaps, p: dpsm::scalar::float::Vec3<f32>) -> bool {
-    let at = dpsm_lookup(p, frame.light);
+fn decided(frame: &Frame, maps: &DepthMaps, point: SurfacePoint) -> bool {
+    let at = frame.lookup(point.p, frame.light_normal(point.triangle));
     if !at.mapped {
         return true;
     }
@@ -93,8 +92,7 @@ fn decided(frame: &Frame, maps: &DepthMaps, p: dpsm::scalar::float::Vec3<f32>) -
     let low = stored.iter().copied().fold(f32::INFINITY, f32::min);
     let high = stored.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let margin = (high - low) * SUBPIXEL + 24.0 * f32::EPSILON + frame.settings.format.quantum();
-    let own = at.depth - frame.bias;
-    own <= low - margin || own > high + margin
+    at.depth <= low - margin || at.depth > high + margin
 }
 
 fn compare(name: &str, frame: &Frame, device: &Device) {
@@ -126,8 +124,39 @@ fn adapter_renders_what_the_ports_render() {
     for name in ["brabec-room", "brabec-ceiling"] {
         for method in [Method::Vertex, Method::FragmentDepth] {
             for format in [Format::D16, Format::D24, Format::D32] {
-                let frame = frame(name, Settings { method, format, ..settings() });
+                // a constant is compared far from the stored depths of lit surfaces
+                let bias = Bias::Constant(None);
+                let frame = frame(name, Settings { method, format, bias, ..settings() });
                 compare(&format!("{name} {method:?} {format:?}"), &frame, &device);
+            }
+        }
+    }
+}
+
+#[test]
+fn adapter_takes_each_bias_as_the_ports_do() {
+    let Some(device) = device() else { return };
+    let differ = |a: &Picture, b: &Picture| {
+        a.pixels.iter().zip(&b.pixels).filter(|(a, b)| levels_apart(**a, **b) > 1).count()
+    };
+    for method in [Method::Exact, Method::Cube] {
+        let of = |bias| frame("brabec-room", Settings { bias, method, ..settings() });
+        let none = cpu::render(&of(Bias::Constant(Some(0.0)))).unwrap().lit;
+        for sampling in [Sampling::Nearest, Sampling::Linear] {
+            for bias in [
+                Bias::Constant(None),
+                Bias::Footprint,
+                Bias::TexelCentre,
+                Bias::TexelCentreOrOwn,
+                Bias::WITHOUT_NORMAL,
+            ] {
+                let settings = Settings { bias, method, sampling, ..settings() };
+                let frame = frame("brabec-room", settings);
+                let adapter = gpu::render(&device, &frame).unwrap().lit;
+                let port = cpu::render(&frame).unwrap().lit;
+                let (apart, effect) = (differ(&adapter, &port), differ(&port, &none));
+                println!("{method:?} {sampling:?} {bias:?}: {apart} pixels apart of {effect}");
+                assert!(effect > 50 * apart, "{method:?} {sampling:?} {bias:?}: {apart} {effect}");
             }
         }
     }
@@ -196,5 +225,10 @@ fn settings_that_do_not_fit_are_refused_with_the_remedy() {
         "near 2 and far 1 must fit 1e-15 <= near < far <= 1e18; set --near and --far, or move the light off the geometry"
     );
     assert!(make(Vec3::new(f32::NAN, 0.0, 0.0), settings()).contains("outside float range"));
-    assert!(make(light, Settings { bias: Some(-1.0), ..settings() }).contains("bias -1"));
+    assert!(
+        make(light, Settings { bias: Bias::Constant(Some(-1.0)), ..settings() })
+            .contains("bias -1")
+    );
+    let steep = Settings { bias: Bias::WithoutNormal(1.5), ..settings() };
+    assert!(make(light, steep).contains("cosine of an incidence from 0 to 1, not 1.5"));
 }

@@ -5,15 +5,16 @@
 //! `lights` also draw docs/pictures/cost-*.svg.
 
 mod cost;
+mod place;
 mod plot;
 mod right;
 
 use std::time::Duration;
 
 use dpsm::gpu::{Device, GpuError, MeshBuffers, Parts, ShadowMaps};
-use dpsm::render::{Frame, Level, Method, Passes, Settings};
-use dpsm::scene::{self, Options, Scene};
-use glam::Vec3;
+use dpsm::render::{Level, Method, Passes, Settings};
+use dpsm::scene;
+use place::Place;
 
 /// Timed runs of each variant, after one that is thrown away; variants take turns.
 const RUNS: usize = 15;
@@ -44,40 +45,6 @@ fn main() {
         {
             println!("{name}: {error}");
         }
-    }
-}
-
-/// A scene to time: its name and a light in it.
-pub struct Place {
-    pub name: String,
-    pub scene: Scene,
-    pub light: Vec3,
-}
-
-impl Place {
-    pub fn of(scene: Scene, name: &str) -> Self {
-        let light = scene.default_light().position;
-        Self { name: format!("{name}, {} triangles", scene.triangle_count()), scene, light }
-    }
-
-    pub fn built_in(name: &str, walls: u32) -> Self {
-        let scene = scene::open(name, &Options { walls }).expect("a built-in scene");
-        Self::of(scene, &format!("{name}, {walls} x {walls} walls"))
-    }
-
-    /// The atrium, where its file lies beside the repository.
-    pub fn sponza() -> Option<Self> {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes/sponza.obj");
-        let scene = scene::open(path, &Options::default()).ok()?;
-        Some(Self { light: Vec3::new(0.0, 4.0, 0.0), ..Self::of(scene, "sponza") })
-    }
-
-    pub fn frame(&self, settings: Settings) -> Frame {
-        let camera = self.scene.default_camera(self.light);
-        // a little off the axes, so that nothing is aligned by chance
-        let axis = Vec3::new(0.05, -1.0, 0.03);
-        let light = self.light + Vec3::new(0.013, 0.017, -0.011);
-        Frame::new(&self.scene, light, axis, false, &camera, settings).expect("a usable frame")
     }
 }
 

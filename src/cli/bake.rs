@@ -65,7 +65,8 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "passes": names.passes,
         "filter": names.filter,
         "bias": names.bias,
-        "constant_bias": frame.bias,
+        "constant_bias": frame.constant_bias(),
+        "depth_tolerance": frame.settings.tolerances()[1],
         "computed_by": describe(device.as_ref()),
     });
     let mut outputs = Outputs::for_option("-o");

@@ -75,7 +75,8 @@ struct Report {
     triangles: usize,
     size: u32,
     options: Names,
-    constant_bias: f32,
+    /// In units of depth, where it is the bias.
+    constant_bias: Option<f32>,
     seed: u64,
     map: MapError,
     shadow: ShadowError,
@@ -140,7 +141,7 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         triangles: frame.triangles.len(),
         size: maps.size,
         options,
-        constant_bias: frame.bias,
+        constant_bias: frame.constant_bias(),
         seed: arguments.seed,
         map,
         shadow,
@@ -163,10 +164,11 @@ fn table(report: &Report) -> String {
     let mut text = String::new();
     let Report { scene, computed_by, triangles, size, options, constant_bias, .. } = report;
     let Names { format, method, filter, bias, .. } = options;
+    let constant = constant_bias.map_or(String::new(), |bias| format!(" {bias}"));
     let _ = writeln!(text, "{computed_by}");
     let _ = writeln!(
         text,
-        "{scene}: {triangles} triangles, {size} x {size}, {format}, {method}, {filter}, {bias} bias {constant_bias}"
+        "{scene}: {triangles} triangles, {size} x {size}, {format}, {method}, {filter}, {bias} bias{constant}"
     );
     let _ = writeln!(
         text,

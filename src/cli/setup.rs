@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
-use dpsm::render::{Format, Frame, Level, Lookup, Method, Passes, Settings};
+use dpsm::render::{Bias, Format, Frame, Level, Lookup, Method, Passes, Settings};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Light, Options};
 use dpsm::{cpu, render};
@@ -52,9 +52,9 @@ pub struct SetupArguments {
     #[arg(long, value_enum, default_value = "hard")]
     filter: FilterName,
     /// What keeps surfaces from shadowing themselves
-    #[arg(long, value_enum, default_value = "constant")]
+    #[arg(long, value_enum, default_value = "texel-centre")]
     bias: BiasName,
-    /// The constant bias in units of depth; by default what 45 degrees incidence needs
+    /// For constant: the bias in units of depth; by default what 45 degrees incidence needs
     #[arg(long, value_name = "DEPTH", allow_negative_numbers = true)]
     constant_bias: Option<f32>,
     /// Near sphere's radius in world units
@@ -130,12 +130,19 @@ enum FilterName {
     Pcss,
 }
 
-/// Biases by their option names, the planned ones included.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+/// Biases by their option names.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum BiasName {
+    /// One for all receivers (Brabec 2002)
     Constant,
+    /// What the receiver's plane changes over the texels that are read
     Footprint,
+    /// The receiver's plane along the texel's centre; with `--filter hardware` as footprint
     TexelCentre,
+    /// The same, or the receiver's own distance where that is nearer
+    TexelCentreOrOwn,
+    /// As footprint, for receivers of unknown planes up to 84 degrees incidence
+    NoNormal,
 }
 
 /// The options that say how, by their names on the command line.
@@ -203,9 +210,17 @@ impl SetupArguments {
             image,
             near: self.near,
             far: self.far,
-            bias: match self.bias {
-                BiasName::Constant => self.constant_bias,
-                planned => return Err(not_built("--bias", planned, "constant")),
+            bias: match (self.bias, self.constant_bias) {
+                (BiasName::Constant, constant) => Bias::Constant(constant),
+                (other, Some(_)) => {
+                    let other = name(other);
+                    let message = format!("--constant-bias is for --bias constant, not {other}");
+                    return Err(CliError::Usage(message));
+                }
+                (BiasName::Footprint, None) => Bias::Footprint,
+                (BiasName::TexelCentre, None) => Bias::TexelCentre,
+                (BiasName::TexelCentreOrOwn, None) => Bias::TexelCentreOrOwn,
+                (BiasName::NoNormal, None) => Bias::WITHOUT_NORMAL,
             },
             views,
             ..Settings::default()

@@ -207,7 +207,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps) -> Picture {
     color(&seen, settings.image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let visibility = match settings.lookup {
-            Lookup::Pixel => frame.visibility(maps, surface.p),
+            Lookup::Pixel => frame.visibility(maps, surface.p, frame.light_normal(triangle)),
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
@@ -231,7 +231,8 @@ fn view_pass(frame: &Frame, maps: &DepthMaps, map: u32) -> Picture {
     };
     color(&seen, [frame.settings.map_size(); 2], |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
-        surface.shade(frame, vector([0.0; 3]), frame.visibility(maps, surface.p))
+        let visibility = frame.visibility(maps, surface.p, frame.light_normal(triangle));
+        surface.shade(frame, vector([0.0; 3]), visibility)
     })
 }
 

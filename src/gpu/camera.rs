@@ -1,11 +1,11 @@
 //! The camera pass, the hemisphere views, and the whole rendering of a frame.
 
 use super::maps::ShadowMaps;
-use super::mesh::{MeshBuffers, POSITION_LAYOUT, SURFACE_LAYOUT};
+use super::mesh::MeshBuffers;
 use super::passes::{depth_attachment, depth_state, light_words, shader, uniform_buffer};
 use super::timer::{ALONE, render_writes};
 use super::{Device, GpuError};
-use crate::render::{AMBIENT, Frame, Lookup, Picture, Projection, Rendering, SPECULAR};
+use crate::render::{AMBIENT, Bias, Frame, Lookup, Picture, Projection, Rendering, SPECULAR};
 use crate::scalar::maps::{DepthMaps, Sampling};
 
 /// Format of the pictures: the attachment encodes sRGB.
@@ -111,7 +111,19 @@ impl<'a> Camera<'a> {
         let row = |(v, last): (glam::Vec3, f32)| [v.x, v.y, v.z, last].map(f32::to_bits);
         let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
         words.extend(light_words(&maps.lights[0]));
-        words.extend([frame.bias.to_bits(), 0, 0, 0]);
+        let settings = &frame.settings;
+        let (kind, cosine) = match settings.bias_taken() {
+            Bias::Constant(_) => (0, 0.0),
+            Bias::Footprint => (1, 0.0),
+            Bias::TexelCentre => (2, 0.0),
+            Bias::WithoutNormal(cosine) => (3, cosine),
+            Bias::TexelCentreOrOwn => (4, 0.0),
+        };
+        let [_, tolerance] = settings.tolerances();
+        let quantum = settings.format.quantum();
+        let biases = [frame.bias, quantum, tolerance, settings.window(), cosine];
+        words.extend(biases.map(f32::to_bits));
+        words.extend([kind, 0, 0]);
         let uniform = uniform_buffer(device, &words)?;
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
         Ok(Self { module, uniform, sampler, maps })
@@ -167,7 +179,7 @@ impl<'a> Camera<'a> {
             });
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
-            mesh.draw(&mut pass, instance);
+            pass.draw(0..3 * mesh.triangles, instance..instance + 1);
         })?;
         Ok((picture(device, &color)?, time))
     }
@@ -185,7 +197,7 @@ impl<'a> Camera<'a> {
                 module: &self.module,
                 entry_point: Some(vertex),
                 compilation_options: Default::default(),
-                buffers: &[Some(POSITION_LAYOUT), Some(SURFACE_LAYOUT)],
+                buffers: &[],
             },
             primitive: Default::default(),
             depth_stencil: Some(depth_state(DEPTH, compare)),
@@ -220,6 +232,9 @@ impl<'a> Camera<'a> {
                     binding: 2,
                     resource: wgpu::BindingResource::Sampler(&self.sampler),
                 },
+                wgpu::BindGroupEntry { binding: 3, resource: mesh.positions.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 4, resource: mesh.indices.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 5, resource: mesh.surfaces.as_entire_binding() },
                 wgpu::BindGroupEntry { binding: 6, resource: mesh.masks.as_entire_binding() },
             ],
         })

@@ -103,11 +103,6 @@ impl MeshBuffers {
         })
     }
 
-    /// Draws every triangle with positions and surfaces.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, instance: u32) {
-        self.draw_range(pass, 0..self.triangles, instance);
-    }
-
     /// Draws a range of triangles with positions and surfaces.
     pub fn draw_range(
         &self,

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, PenumbraError, Point};
-use crate::render::{Format, Method, Projection};
+use crate::render::{Bias, Format, Method, Projection};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::hemisphere::dpsm_flip;
 use crate::scalar::light::DpsmLight;
@@ -150,23 +150,41 @@ fn resolution(bench: &Bench<'_>, points: &[Point]) -> Source {
     largest(points.par_iter().map(at), source(0.0, String::new()))
 }
 
-/// Bias: with exact distances, a point within the bias behind its occluder is lit. The largest such
-/// distance, the contact gap; it cannot exceed the bias.
+/// Bias: with exact distances, a point less than the bias behind its occluder is lit. The largest
+/// such distance, the contact gap; it cannot exceed the bias. Both along the direction that is
+/// compared: the point's own, or the centre of its texel, where the point's plane takes its place.
 fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
-    let bias = f64::from(bench.frame.bias) * (bench.light.far - bench.light.near);
-    let source = |measured, place| Source {
+    let source = |measured, predicted, place| Source {
         name: "bias",
         measured,
-        predicted: Some(bias),
+        predicted: Some(predicted),
         unit: "world units of contact gap",
         place,
     };
     let at = |point: &Point| {
-        let own = (point.world - bench.origin).length();
-        let gap = bench.occluder(point).map(|hit| own - hit.distance).filter(|gap| *gap <= bias);
-        source(gap.unwrap_or(0.0), format!("{}", point.world))
+        let (p, normal) = bench.receiver(point);
+        let at = bench.frame.lookup(p, normal);
+        let (map, own) = bench.place(point);
+        let (compared, uv) = match (bench.frame.settings.bias_taken(), point.normal) {
+            (Bias::TexelCentre | Bias::TexelCentreOrOwn, Some(normal)) => {
+                let centre = dpsm_texture_to_disk(at.coordinates.widen(), bench.light.guard);
+                let direction = bench.direction(centre, map).normalize();
+                let to_point = point.world - bench.origin;
+                let distance = normal.dot(to_point) / normal.dot(direction);
+                if !(distance.is_finite() && distance > 0.0) {
+                    return source(0.0, 0.0, String::new());
+                }
+                (Point { world: bench.origin + direction * distance, ..*point }, centre)
+            }
+            _ => (*point, own),
+        };
+        let distance = (compared.world - bench.origin).length();
+        let bias = distance - bench.distance(f64::from(at.depth), uv);
+        let gap = bench.occluder(&compared).map(|hit| distance - hit.distance);
+        let gap = gap.filter(|gap| *gap <= bias);
+        source(gap.unwrap_or(0.0), bias, format!("{}", point.world))
     };
-    largest(points.par_iter().map(at), source(0.0, String::new()))
+    largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
 
 /// Bowed edges: how far the straight edges of triangles are from the arcs that they stand for, in

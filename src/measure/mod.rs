@@ -89,6 +89,23 @@ impl<'a> Bench<'a> {
         self.to_world * world(self.projection.direction(uv, map))
     }
 
+    /// A point as the shader gets it: light-space position and normal, zero where it has none.
+    pub fn receiver(&self, point: &Point) -> (Vec3<f32>, Vec3<f32>) {
+        let turn = |v: DVec3| {
+            let DpsmLight { right, up, forward, .. } = self.light;
+            let v = Vec3::new(v.x, v.y, v.z);
+            Vec3::new(right.dot(v), up.dot(v), forward.dot(v))
+        };
+        let normal = point.normal.map_or(Vec3::splat(0.0), turn);
+        (self.to_light(point.world).narrow(), normal.narrow())
+    }
+
+    /// The visibility of a point by the frame's maps and bias.
+    pub fn visibility(&self, point: &Point) -> f32 {
+        let (p, normal) = self.receiver(point);
+        self.frame.visibility(self.maps, p, normal)
+    }
+
     /// The first hit of a texel's direction between near and far: its distance.
     pub fn first_distance(&self, uv: Vec2<f64>, map: u32) -> Option<f64> {
         self.first_hit(self.direction(uv, map)).map(|hit| hit.distance)

@@ -66,9 +66,8 @@ pub fn penumbra_error(
     let errors: Vec<(f64, f64)> = points
         .par_iter()
         .filter_map(|point| {
-            let p = bench.to_light(point.world).narrow();
             let (hemisphere, uv) = bench.place(point);
-            let visibility = bench.frame.visibility(bench.maps, p);
+            let visibility = bench.visibility(point);
             let truth = coverage(bench, point, cone_texels * bench.pitch(uv));
             point_done();
             (hemisphere < bench.frame.light.hemispheres)

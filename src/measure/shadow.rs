@@ -70,7 +70,7 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
     let own = p.length();
     let [near, far] = bench.clip(point.world - bench.origin);
     Judgement {
-        visibility: bench.frame.visibility(bench.maps, p.narrow()),
+        visibility: bench.visibility(point),
         hemisphere,
         uv: [uv.x, uv.y],
         stored,

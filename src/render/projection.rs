@@ -1,9 +1,14 @@
 //! What the maps of a light are: two disks, or six faces of a cube; one interface to both.
 
-use super::{Frame, Method};
+use super::{Bias, Frame, Method};
+use crate::scalar::bias::{
+    dpsm_bias_footprint, dpsm_bias_without_normal, dpsm_lookup_biased, dpsm_lookup_texel_centre,
+    dpsm_lookup_texel_centre_or_own, dpsm_receiver,
+};
 use crate::scalar::cube::{
-    dpsm_cube_depth, dpsm_cube_distance, dpsm_cube_face, dpsm_cube_lookup, dpsm_cube_unview,
-    dpsm_cube_view, dpsm_cube_visibility,
+    dpsm_cube_depth, dpsm_cube_distance, dpsm_cube_face, dpsm_cube_lookup,
+    dpsm_cube_lookup_along_centre, dpsm_cube_lookup_footprint, dpsm_cube_lookup_without_normal,
+    dpsm_cube_receiver_depth, dpsm_cube_unview, dpsm_cube_view,
 };
 use crate::scalar::depth::{dpsm_distance, dpsm_receiver_depth};
 use crate::scalar::float::{Float, Vec2, Vec3};
@@ -11,9 +16,9 @@ use crate::scalar::hemisphere::{dpsm_flip, dpsm_hemisphere};
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::{DepthMaps, Maps};
 use crate::scalar::paraboloid::{
-    dpsm_project, dpsm_texel_pitch, dpsm_texture_to_disk, dpsm_unproject,
+    dpsm_project, dpsm_project_own, dpsm_texel_pitch, dpsm_texture_to_disk, dpsm_unproject,
 };
-use crate::scalar::visibility::{DpsmLookup, dpsm_lookup, dpsm_visibility};
+use crate::scalar::visibility::{DpsmLookup, dpsm_lookup};
 
 /// How a method's maps hold the directions around a light.
 ///
@@ -38,9 +43,66 @@ impl Method {
 }
 
 impl Frame {
-    /// The shadow test at a light-space position with the frame's bias: 1 lit, 0 in shadow.
-    pub fn visibility(&self, maps: &DepthMaps, p: Vec3<f32>) -> f32 {
-        self.settings.method.projection().visibility(maps, p, self.light, self.bias)
+    /// The shadow test with the frame's bias: 1 lit, 0 in shadow.
+    ///
+    /// `p`: light-space position; `normal`: the surface's own there, in light space, of any length
+    /// and side; zero where it is not known.
+    pub fn visibility(&self, maps: &DepthMaps, p: Vec3<f32>, normal: Vec3<f32>) -> f32 {
+        let at = self.lookup(p, normal);
+        match at.mapped {
+            true => maps.compare(at.coordinates, at.layer, at.depth),
+            false => 0.0,
+        }
+    }
+
+    /// Where the shadow test looks, and the depth that it compares, less the frame's bias.
+    pub fn lookup(&self, p: Vec3<f32>, normal: Vec3<f32>) -> DpsmLookup<f32> {
+        let (settings, light) = (&self.settings, self.light);
+        let quantum = settings.format.quantum();
+        let [_, tolerance] = settings.tolerances();
+        let receiver = dpsm_receiver(p, normal);
+        let texels = settings.window();
+        match settings.method.projection() {
+            Projection::Paraboloid => {
+                let uv = dpsm_project_own(p);
+                let window = match settings.bias_taken() {
+                    Bias::Constant(_) => {
+                        let at = dpsm_lookup(p, light);
+                        return DpsmLookup { depth: at.depth - self.bias, ..at };
+                    }
+                    Bias::TexelCentre => {
+                        return dpsm_lookup_texel_centre(p, receiver, light, quantum, tolerance);
+                    }
+                    Bias::TexelCentreOrOwn => {
+                        return dpsm_lookup_texel_centre_or_own(
+                            p, receiver, light, quantum, tolerance,
+                        );
+                    }
+                    Bias::Footprint => dpsm_bias_footprint(receiver, uv, texels, light),
+                    Bias::WithoutNormal(cosine) => {
+                        dpsm_bias_without_normal(p.length(), cosine, uv, texels, light)
+                    }
+                };
+                dpsm_lookup_biased(p, window, light, quantum, tolerance)
+            }
+            Projection::Cube => match settings.bias_taken() {
+                Bias::Constant(_) => {
+                    let at = dpsm_cube_lookup(p, light);
+                    let depth = dpsm_cube_receiver_depth(p, at.hemisphere, light, self.bias);
+                    DpsmLookup { depth, ..at }
+                }
+                Bias::TexelCentre => {
+                    dpsm_cube_lookup_along_centre(p, receiver, light.far, light, quantum)
+                }
+                Bias::TexelCentreOrOwn => {
+                    dpsm_cube_lookup_along_centre(p, receiver, receiver.distance, light, quantum)
+                }
+                Bias::Footprint => dpsm_cube_lookup_footprint(p, receiver, texels, light, quantum),
+                Bias::WithoutNormal(cosine) => {
+                    dpsm_cube_lookup_without_normal(p, cosine, texels, light, quantum)
+                }
+            },
+        }
     }
 
     /// The distances that a layer stores, row by row from the top; infinite where it is empty.
@@ -72,20 +134,6 @@ impl Projection {
         match self {
             Self::Paraboloid => dpsm_lookup(p, light),
             Self::Cube => dpsm_cube_lookup(p, light),
-        }
-    }
-
-    /// The shadow test: `dpsm_visibility`, `dpsm_cube_visibility`.
-    pub fn visibility<T: Float>(
-        self,
-        maps: &impl Maps<T>,
-        p: Vec3<T>,
-        light: DpsmLight<T>,
-        bias: T,
-    ) -> T {
-        match self {
-            Self::Paraboloid => dpsm_visibility(maps, p, light, bias),
-            Self::Cube => dpsm_cube_visibility(maps, p, light, bias),
         }
     }
 

@@ -82,6 +82,28 @@ pub enum Lookup {
     Vertex,
 }
 
+/// What keeps surfaces from shadowing themselves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bias {
+    /// A constant in units of depth, at the receiver; by default `constant_bias`.
+    Constant(Option<f32>),
+    /// By the receiver's plane, over the texels that are read.
+    Footprint,
+    /// The receiver's plane along the texel's centre; where 2 x 2 texels are compared with one
+    /// depth, `Footprint`.
+    TexelCentre,
+    /// The same, or the receiver's own distance where that is nearer: fewer creases shadow
+    /// themselves, and occluders closer than half a texel's slope are forgiven.
+    TexelCentreOrOwn,
+    /// `Footprint` for a receiver of unknown plane, whose incidence's cosine is at least this.
+    WithoutNormal(f32),
+}
+
+impl Bias {
+    /// `WithoutNormal` at the incidence beyond which a surface gets less than a tenth of the light.
+    pub const WITHOUT_NORMAL: Self = Self::WithoutNormal(0.1);
+}
+
 /// The settings of a rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -114,8 +136,8 @@ pub struct Settings {
     pub near: Option<f32>,
     /// Far sphere's radius; by default just beyond the farthest vertex.
     pub far: Option<f32>,
-    /// Constant bias in units of depth, at the receiver; by default `constant_bias`.
-    pub bias: Option<f32>,
+    /// What keeps surfaces from shadowing themselves; lookups by vertex take a constant bias.
+    pub bias: Bias,
     /// Also give the maps and what the light sees of each hemisphere.
     pub views: bool,
 }
@@ -137,7 +159,7 @@ impl Default for Settings {
             image: [960, 720],
             near: None,
             far: None,
-            bias: None,
+            bias: Bias::TexelCentre,
             views: false,
         }
     }
@@ -151,10 +173,11 @@ pub fn constant_bias(size: u32, format: Format) -> f32 {
     (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
 }
 
-/// The relative error of the hybrid method's distances that a bias of that many units of depth
-/// allows: a third of it, and at most 9/10 of a thousandth.
-pub fn depth_tolerance(bias: f32) -> f32 {
-    (bias / 3.0).min(9e-4)
+/// The relative error of distances that the hybrid method is allowed: half the finest texel's
+/// width, 2 (1 + guard) / N at the rim, so that maps are as exact along a ray as across it, and at
+/// most 9/10 of the thousandth that makes a texel wrong (docs/measure.md).
+pub fn depth_tolerance(size: u32) -> f32 {
+    ((1.0 + guard_band(size)) / size as f32).min(9e-4)
 }
 
 impl Settings {
@@ -182,12 +205,31 @@ impl Settings {
 
     /// tau and depth tolerance of the method: both 0 for the exact one.
     pub fn tolerances(&self) -> [f32; 2] {
-        let bias = constant_bias(self.size, self.format);
         match self.method {
             Method::Hybrid => {
-                [self.tau, self.depth_tolerance.unwrap_or_else(|| depth_tolerance(bias))]
+                let depth = self.depth_tolerance.unwrap_or_else(|| depth_tolerance(self.size));
+                [self.tau, depth]
             }
             _ => [0.0, 0.0],
+        }
+    }
+
+    /// The bias's window: half the side, in texels, of the square that holds the centres read.
+    pub fn window(&self) -> f32 {
+        match self.sampling {
+            Sampling::Nearest => 0.5,
+            Sampling::Linear => 1.0,
+        }
+    }
+
+    /// The bias that is taken: one depth for 2 x 2 texels cannot follow each one's centre, and
+    /// lookups by vertex know no plane.
+    pub fn bias_taken(&self) -> Bias {
+        match (self.bias, self.sampling, self.lookup) {
+            (Bias::Constant(_), _, _) => self.bias,
+            (_, _, Lookup::Vertex) => Bias::Constant(None),
+            (Bias::TexelCentre | Bias::TexelCentreOrOwn, Sampling::Linear, _) => Bias::Footprint,
+            (bias, _, _) => bias,
         }
     }
 }

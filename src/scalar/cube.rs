@@ -1,9 +1,12 @@
 //! Port of `wgsl/cube.wesl`.
 
+use super::bias::{DPSM_RECEIVER_ROUNDING, DpsmReceiver, dpsm_texel_centre};
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::light::DpsmLight;
 use super::maps::Maps;
-use super::paraboloid::{DPSM_SMALLEST, dpsm_disk_to_texture, dpsm_texture_to_disk};
+use super::paraboloid::{
+    DPSM_SMALLEST, dpsm_disk_to_texture, dpsm_texel_width, dpsm_texture_to_disk,
+};
 use super::visibility::DpsmLookup;
 
 /// Faces of a cube.
@@ -11,6 +14,12 @@ pub const DPSM_CUBE_FACES: u32 = 6;
 
 /// 1 and 16 eps: what dpsm_cube_outside adds to a face's half-extent.
 pub const DPSM_CUBE_REACH: f64 = 1.0 + 1.0 / (1u64 << 19) as f64;
+
+/// What rounding adds to a stored depth, over far / (far - near), for each (far + near) / z.
+pub const DPSM_CUBE_STORED: f64 = 5.5 / (1u64 << 23) as f64;
+
+/// The same to a stored depth's own rounding and to a receiver's depth: 12 eps.
+pub const DPSM_CUBE_OWN: f64 = 12.0 / (1u64 << 23) as f64;
 
 /// The face of a light-space point, by its largest component; z wins over y and y over x.
 pub fn dpsm_cube_face<T: Float>(p: Vec3<T>) -> u32 {
@@ -92,6 +101,86 @@ pub fn dpsm_cube_lookup<T: Float>(p: Vec3<T>, light: DpsmLight<T>) -> DpsmLookup
         hemisphere: face,
         mapped: true,
     }
+}
+
+/// What is left of the bias where the same direction is compared, in units of the stored depth.
+pub fn dpsm_cube_slack<T: Float>(z: T, light: DpsmLight<T>, quantum: T) -> T {
+    let steps = T::lit(DPSM_CUBE_STORED) * ((light.far + light.near) / z.max(light.near))
+        + T::lit(DPSM_CUBE_OWN);
+    quantum + steps * (light.far / (light.far - light.near))
+}
+
+/// The depth along the centre of the receiver's texel, of its plane up to the distance `limit`, less
+/// the slack.
+pub fn dpsm_cube_lookup_along_centre<T: Float>(
+    p: Vec3<T>,
+    receiver: DpsmReceiver<T>,
+    limit: T,
+    light: DpsmLight<T>,
+    quantum: T,
+) -> DpsmLookup<T> {
+    let zero = T::lit(0.0);
+    let at = dpsm_cube_lookup(p, light);
+    let v = dpsm_cube_view(p, at.hemisphere);
+    let centre = dpsm_texel_centre(v.xy() / v.z.max(T::lit(DPSM_SMALLEST)), light);
+    let direction = Vec3::new(centre.x, centre.y, T::lit(1.0));
+    let l = direction.length();
+    let facing = receiver.plane.xyz().dot(dpsm_cube_unview(direction, at.hemisphere));
+    let leaned = facing.max(zero) + T::lit(DPSM_RECEIVER_ROUNDING) * l;
+    // beyond the plane's horizon only what is nearer than the receiver can shadow it
+    let there = (receiver.plane.w / leaned).min(limit / l);
+    let z = select(receiver.distance / l, there, facing > zero);
+    DpsmLookup {
+        coordinates: dpsm_disk_to_texture(centre, light.guard),
+        depth: dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum),
+        ..at
+    }
+}
+
+/// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
+/// slack.
+pub fn dpsm_cube_lookup_footprint<T: Float>(
+    p: Vec3<T>,
+    receiver: DpsmReceiver<T>,
+    texels: T,
+    light: DpsmLight<T>,
+    quantum: T,
+) -> DpsmLookup<T> {
+    let normal = dpsm_cube_view(receiver.plane.xyz(), dpsm_cube_face(p));
+    let side = texels * dpsm_texel_width(light.size, light.guard);
+    let rise = side * (normal.x.abs() + normal.y.abs());
+    dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum)
+}
+
+/// The same without a normal, for incidences whose cosine is at least the given one.
+pub fn dpsm_cube_lookup_without_normal<T: Float>(
+    p: Vec3<T>,
+    cosine: T,
+    texels: T,
+    light: DpsmLight<T>,
+    quantum: T,
+) -> DpsmLookup<T> {
+    // the normal's part across the axis is at most 1 long, and may point to a corner
+    let side = texels * dpsm_texel_width(light.size, light.guard);
+    let rise = Vec2::splat(side).length();
+    dpsm_cube_lookup_rising(p, cosine * p.length(), rise, light, quantum)
+}
+
+/// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
+/// rises by so much from where the point is, less the slack.
+pub fn dpsm_cube_lookup_rising<T: Float>(
+    p: Vec3<T>,
+    height: T,
+    rise: T,
+    light: DpsmLight<T>,
+    quantum: T,
+) -> DpsmLookup<T> {
+    let at = dpsm_cube_lookup(p, light);
+    let own = dpsm_cube_view(p, at.hemisphere).z.max(T::lit(DPSM_SMALLEST));
+    let rounding = T::lit(DPSM_RECEIVER_ROUNDING) * p.length();
+    let z = own * (height / (height + rise * own + rounding));
+    let depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
+    DpsmLookup { depth, ..at }
 }
 
 /// The shadow test for each pixel: 1 lit, 0 in shadow; `maps` stands for texture and sampler.

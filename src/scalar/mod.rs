@@ -9,6 +9,7 @@
 //! assert_eq!((rim.x, rim.y), (0.6, 0.8));
 //! ```
 
+pub mod bias;
 pub mod caster;
 pub mod classify;
 pub mod cube;

@@ -1,5 +1,6 @@
 //! The ports by name, callable on flat words, as the evaluator and `dpsm eval` need them.
 
+use super::bias::*;
 use super::caster::*;
 use super::classify::*;
 use super::cube::*;
@@ -105,6 +106,7 @@ flat! {
     DpsmCasterFragment { depth, keep }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
+    DpsmReceiver { plane, distance }
     DpsmTriangle { first, second, third, plane, span }
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
@@ -223,10 +225,18 @@ ports! {
         dpsm_classify_misses, dpsm_classify_part, dpsm_classify_half, dpsm_classify_kind,
     }
     visibility { dpsm_lookup, dpsm_receiver_vertex }
+    bias {
+        dpsm_receiver, dpsm_receiver_cosine, dpsm_receiver_distance, dpsm_bias_slack,
+        dpsm_bias_window, dpsm_bias_plane, dpsm_bias_footprint, dpsm_bias_without_normal, dpsm_texel_centre,
+        dpsm_lookup_texel_centre, dpsm_lookup_texel_centre_or_own, dpsm_lookup_along_centre,
+        dpsm_lookup_biased,
+    }
     cube {
         dpsm_cube_face, dpsm_cube_view, dpsm_cube_unview, dpsm_cube_guard, dpsm_cube_vertex,
-        dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_direction,
-        dpsm_cube_distance, dpsm_cube_outside,
+        dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_slack,
+        dpsm_cube_lookup_along_centre, dpsm_cube_lookup_footprint,
+        dpsm_cube_lookup_without_normal, dpsm_cube_lookup_rising,
+        dpsm_cube_direction, dpsm_cube_distance, dpsm_cube_outside,
     }
     shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight }
 }

@@ -1,5 +1,6 @@
 //! The built-in scenes.
 
+mod contact;
 mod crowd;
 mod fence;
 mod room;
@@ -12,7 +13,7 @@ use super::{Camera, Light, Mesh, Options, Scene, SceneError};
 pub use crowd::{crowd, dozen};
 
 /// Name and one line about each scene that [`open`](super::open) builds.
-pub const BUILT_IN: [(&str, &str); 7] = [
+pub const BUILT_IN: [(&str, &str); 11] = [
     (
         "brabec-room",
         "closed room with solids, omnidirectional light in its middle (Brabec 2002, figure 3)",
@@ -29,6 +30,10 @@ pub const BUILT_IN: [(&str, &str); 7] = [
     ("cage", "closed room, omnidirectional light in a cage of thin bars"),
     ("fence", "closed room, omnidirectional light between alpha-masked lattice and leaves"),
     ("crowd", "closed room of large triangles, 40,000 small ones of spheres and boxes in it"),
+    ("grazing", "closed room, a table and a screen that the light sees at up to 89.7 degrees"),
+    ("gaps", "closed room, boards that hover 1 mm to 10 cm over the floor"),
+    ("contact", "closed room, boxes 1 cm to 2.5 m high that touch the floor"),
+    ("seam-edge", "closed room, boxes with edges in the plane between the hemispheres"),
 ];
 
 /// `name` is one of [`BUILT_IN`].
@@ -49,6 +54,10 @@ pub(super) fn build(name: &str, walls: u32) -> Result<Scene, SceneError> {
                 "seam-box" => room::seam_box(walls),
                 "cage" => room::cage(walls),
                 "fence" => fence::fence(walls),
+                "grazing" => contact::grazing(walls),
+                "gaps" => contact::gaps(walls),
+                "contact" => contact::contact(walls),
+                "seam-edge" => contact::seam_edge(walls),
                 "crowd" => crowd::meshes(crowd::BUILT_IN, walls),
                 _ => room::solids(walls),
             };

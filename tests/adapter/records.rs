@@ -1,6 +1,7 @@
 //! Random records over a function's domain, by its arguments' names.
 
 use dpsm::reflect::{Component, Kind, Signature};
+use dpsm::scalar::bias::dpsm_receiver;
 use dpsm::scalar::classify::dpsm_classify_part;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::ports::{Flat, Word};
@@ -15,6 +16,9 @@ pub fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
     let mut words = Vec::new();
     let [corner_a, corner_b, corner_c] = corners(rng);
     let disk_a = disk(rng);
+    // the terms of a texel's centre and widths may be grouped so that guards beyond 2^126 overflow
+    let centred =
+        signature.arguments.iter().any(|(name, _)| name == "receiver" || name == "cosine");
     for (name, shape) in &signature.arguments {
         let components = shape.components(name);
         let integers = components.iter().all(|c| c.kind != Kind::Float);
@@ -26,11 +30,20 @@ pub fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
             ("path", 1) => words.push(Word::Integer(1 + (rng.u32(0..4095) >> rng.u32(0..12)))),
             ("weights", 3) => words.extend([0; 3].map(|_| Word::Integer(rng.u32(0..9)))),
             _ if integers => words.push(Word::Integer(rng.u32(0..2))),
+            ("light", _) if centred => light(rng).write(&mut words),
             _ if wild => words.extend(components.iter().map(|component| any(component, rng))),
             ("light", _) => light(rng).write(&mut words),
             ("normal" | "to_light" | "to_eye", 3) => unit(rng).write(&mut words),
-            ("guard" | "visibility" | "bias" | "tau" | "depth_tolerance", 1) => {
+            ("guard" | "visibility" | "bias" | "tau" | "depth_tolerance", 1)
+            | ("cosine" | "window" | "quantum" | "tolerance", 1) => {
                 words.push(Word::Float(rng.f32()));
+            }
+            ("texels" | "chord_square", 1) => {
+                spread(rng, -24, 8).abs().write(&mut words);
+            }
+            ("receiver", 5) => {
+                let (p, normal) = (point(rng, -24, 24), unit(rng) * spread(rng, -24, 24));
+                dpsm_receiver(p, normal).write(&mut words);
             }
             ("normal_z", 1) => uniform(rng, -1.0, 1.0).write(&mut words),
             ("bow" | "bow_before" | "bow_after", 1) => spread(rng, -20, 0).abs().write(&mut words),

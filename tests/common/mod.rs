@@ -2,6 +2,7 @@
 #![allow(dead_code)] // each test file uses its part
 
 pub mod exact;
+pub mod planes;
 
 use dpsm::scalar::float::Vec3;
 use dpsm::scalar::light::DpsmLight;

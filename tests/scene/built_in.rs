@@ -258,7 +258,7 @@ fn crowd_has_as_many_triangles_as_asked_and_its_objects_keep_apart() {
 #[test]
 fn names_with_typing_errors_get_a_suggestion() {
     let message = |name| open(name, &Options::default()).unwrap_err().to_string();
-    let help = "(built in: brabec-room, brabec-ceiling, cornell, seam-box, cage, fence, crowd; \
+    let help = "(built in: brabec-room, brabec-ceiling, cornell, seam-box, cage, fence, crowd, grazing, gaps, contact, seam-edge; \
                 or give the path of a .obj, .gltf or .glb file)";
     for (typed, meant) in
         [("brabec-rom", "brabec-room"), ("brabec-c", "brabec-ceiling"), ("Cornel", "cornell")]
