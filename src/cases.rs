@@ -3,6 +3,7 @@
 
 mod bias;
 mod exact;
+mod filters;
 
 use crate::scalar::float::{Vec2, Vec3, Vec4};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_POLE_RADIUS};
@@ -173,6 +174,7 @@ pub fn of(function: &str) -> Vec<Case> {
         _ => {
             bias::add(function, &mut cases);
             exact::add(function, &mut cases);
+            filters::add(function, &mut cases);
         }
     }
     cases.0

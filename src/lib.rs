@@ -63,7 +63,7 @@ macro_rules! modules {
 }
 modules! {
     "light" "hemisphere" "paraboloid" "depth" "caster" "tessellate" "edge" "triangle" "classify"
-    "visibility" "bias" "cube" "shade"
+    "visibility" "bias" "cube" "kernel" "filter" "pcss" "raw" "lights" "shade"
 }
 
 /// The module of that name.

@@ -2,6 +2,7 @@
 
 mod error;
 mod extent;
+mod filter;
 mod meshes;
 mod projection;
 mod settings;
@@ -10,7 +11,8 @@ pub use error::FrameError;
 pub use extent::Extent;
 pub use projection::{Projection, texel};
 pub use settings::{
-    Bias, Format, Level, Lookup, Method, Passes, Settings, constant_bias, depth_tolerance,
+    Bias, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings, Taps,
+    constant_bias, depth_tolerance,
 };
 
 use std::ops::Range;
@@ -21,6 +23,7 @@ use glam::{DVec3, Vec2, Vec3};
 use crate::scalar::cube::{DPSM_CUBE_FACES, dpsm_cube_guard};
 use crate::scalar::float as scalar;
 use crate::scalar::hemisphere::dpsm_to_light;
+use crate::scalar::kernel::dpsm_kernel_guard;
 use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
 use crate::scalar::maps::DepthMaps;
 use crate::scalar::triangle::dpsm_triangle_plane;
@@ -78,6 +81,9 @@ pub struct Frame {
     pub masks: Vec<(Range<u32>, Mask)>,
     /// The light.
     pub light: DpsmLight<f32>,
+    /// More lights, which the lit image takes the mean of with the first; views, maps and measures
+    /// are of the first alone.
+    pub more: Vec<DpsmLight<f32>>,
     /// The light's linear colour.
     pub color: Vec3,
     /// The constant bias in units of depth, at the receiver, where that is what is taken.
@@ -121,11 +127,10 @@ pub const SMALLEST: f32 = 1e-15;
 /// Largest map or image side without an adapter, WebGPU's usual limit on large ones.
 pub const LARGEST_SIZE: u32 = 16384;
 
-/// Guard band that keeps the 2 x 2 texels of any lookup up to the rim inside the stored disk:
-/// the diagonal of a texel, sqrt(2) texels of 2 (1 + g) / N, solved for g.
+/// Guard band that keeps the 2 x 2 texels of any lookup up to the rim inside the stored disk. Taps
+/// of a kernel go on in the other map, so it is wide enough for all filters but the naive one.
 pub fn guard_band(size: u32) -> f32 {
-    let diagonal = 2.0 * std::f32::consts::SQRT_2;
-    (diagonal / (size as f32 - diagonal).max(diagonal)).min(1.0)
+    dpsm_kernel_guard(size as f32, 2.0)
 }
 
 impl Frame {
@@ -152,6 +157,7 @@ impl Frame {
             return Err(FrameError::Cube { what: "lookup by vertex", remedy });
         }
         settings.check_passes()?;
+        check_filter(&settings)?;
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
@@ -206,7 +212,8 @@ impl Frame {
         };
         let view = View::new(camera, settings.image)?;
         let color = Vec3::ONE;
-        Ok(Self { vertices, triangles, meshes, masks, light, color, bias, view, settings })
+        let more = Vec::new();
+        Ok(Self { vertices, triangles, meshes, masks, light, more, color, bias, view, settings })
     }
 }
 
@@ -224,6 +231,26 @@ impl Frame {
         let [Some(a), Some(b), Some(c)] = corners.map(corner) else { return none };
         let [a, b, c] = [a, b, c].map(|v| dpsm_to_light(float(v.position), self.light));
         dpsm_triangle_plane(a, b, c).xyz()
+    }
+}
+
+impl Frame {
+    /// The frame with more lights, each with the spheres that a frame of its own would have.
+    ///
+    /// For paraboloid maps, lookups by pixel, and a single lookup or the disk of a cone.
+    pub fn with_lights(
+        mut self,
+        lights: impl IntoIterator<Item = DpsmLight<f32>>,
+    ) -> Result<Self, FrameError> {
+        self.more = lights.into_iter().collect();
+        let Settings { filter, method, lookup, .. } = self.settings;
+        let fits = matches!(filter, Filter::Single | Filter::Disk(_))
+            && method != Method::Cube
+            && lookup == Lookup::Pixel;
+        match fits || self.more.is_empty() {
+            true => Ok(self),
+            false => Err(FrameError::Lights),
+        }
     }
 }
 
@@ -285,6 +312,23 @@ fn check(what: &'static str, value: Vec3) -> Result<(), FrameError> {
     match value.abs().max_element() <= LARGEST && value.is_finite() {
         true => Ok(()),
         false => Err(FrameError::Range { what, value }),
+    }
+}
+
+/// What filters with a kernel need.
+fn check_filter(settings: &Settings) -> Result<(), FrameError> {
+    if let Some(fault) = settings.filter.fault() {
+        return Err(FrameError::Filter(fault));
+    }
+    match (settings.filter, settings.method, settings.lookup) {
+        (Filter::Single, _, _) => Ok(()),
+        (_, Method::Cube, _) => {
+            Err(FrameError::Kernel { needs: "paraboloid maps", remedy: "another --method" })
+        }
+        (_, _, Lookup::Vertex) => {
+            Err(FrameError::Kernel { needs: "lookups by pixel", remedy: "--lookup pixel" })
+        }
+        _ => Ok(()),
     }
 }
 

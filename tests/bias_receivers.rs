@@ -33,6 +33,14 @@ impl<F: Fn(Vec3<f64>) -> Option<f64>> Maps<f64> for Map<F> {
     fn compare(&self, st: Vec2<f64>, layer: u32, reference: f64) -> f64 {
         f64::from(u8::from(reference <= self.stored(st, layer)))
     }
+
+    fn size(&self) -> Vec2<f64> {
+        Vec2::splat(self.light.size)
+    }
+
+    fn load(&self, texel: Vec2<f64>, layer: u32) -> f64 {
+        self.stored((texel + Vec2::splat(0.5)) / self.light.size, layer)
+    }
 }
 
 #[test]

@@ -173,7 +173,22 @@ fn bad_settings_are_refused() {
     refused("axis", &with(&["--axis=0,0,0"]), &["axis", "--axis"]);
     refused("picture", &["render", "cornell", "-o", "out.jpg"], &["out.jpg", "PNG"]);
     refused("near", &with(&["--near", "-1"]), &["near -1"]);
-    refused("filter", &with(&["--filter", "pcss"]), &["--filter pcss is not built yet"]);
+    refused("filter-taps", &with(&["--taps", "8"]), &["--filter hard takes no --taps"]);
+    refused(
+        "filter-no-taps",
+        &with(&["--filter", "disk", "--taps", "0"]),
+        &["0 taps", "1 to 1024"],
+    );
+    let angle = ["--filter", "disk", "--kernel-angle", "90"];
+    refused("filter-angle", &with(&angle), &["--kernel-angle 90", "below 90"]);
+    let soft = ["--filter", "disk", "--light-size", "0.1"];
+    refused("filter-soft", &with(&soft), &["--filter disk takes no --light-size or --nearest"]);
+    let radius = ["--filter", "mirror", "--kernel-radius=-1"];
+    refused("filter-radius", &with(&radius), &["size of -1", "0 to 1024"]);
+    let cube = ["--filter", "pcss", "--method", "cube"];
+    refused("filter-cube", &with(&cube), &["paraboloid maps", "--filter hard", "another --method"]);
+    let vertex = ["--filter", "disk", "--lookup", "vertex"];
+    refused("filter-vertex", &with(&vertex), &["lookups by pixel", "--lookup pixel"]);
     let two = ["--bias", "footprint", "--constant-bias", "0.01"];
     refused("bias", &with(&two), &["--constant-bias is for --bias constant, not footprint"]);
     refused("light-text", &with(&["--light", "1,2"]), &["--light", "three numbers"]);

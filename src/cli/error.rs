@@ -29,16 +29,6 @@ pub enum CliError {
         /// The option that says where.
         remedy: &'static str,
     },
-    /// An option's value that is known but not built.
-    #[error("{option} {value} is not built yet; built: {built}")]
-    NotBuilt {
-        /// The option.
-        option: &'static str,
-        /// Its value.
-        value: String,
-        /// The values that work.
-        built: &'static str,
-    },
     /// An option whose value does not fit.
     #[error("{0}")]
     Usage(String),

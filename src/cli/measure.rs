@@ -258,8 +258,17 @@ fn table(report: &Report) -> String {
     let _ = writeln!(
         text,
         "\npenumbra error (cone of {:.2} texels): RMSE {:.4} over {} points, {:.4} over the {} in \
-         the penumbra",
-        p.cone_texels, p.rmse, p.points, p.penumbra_rmse, p.penumbra_points
+         the penumbra\n  \
+         seam band: {:.4} over {} of these, interior {:.4}, ratio {:.3}",
+        p.cone_texels,
+        p.rmse,
+        p.points,
+        p.penumbra_rmse,
+        p.penumbra_points,
+        p.seam_rmse,
+        p.seam_points,
+        p.interior_rmse,
+        p.seam_rmse / p.interior_rmse.max(f64::MIN_POSITIVE)
     );
     let _ = writeln!(text, "\n{:<18}{:>13}{:>13}  unit", "source", "measured", "predicted");
     for source in &report.sources {

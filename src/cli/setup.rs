@@ -3,7 +3,9 @@
 use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
-use dpsm::render::{Bias, Format, Frame, Level, Lookup, Method, Passes, Settings};
+use dpsm::render::{
+    Bias, Filter, Format, Frame, Kernel, Level, Lookup, Method, Passes, Settings, Taps,
+};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Light, Options};
 use dpsm::{cpu, render};
@@ -20,6 +22,10 @@ pub struct SetupArguments {
     /// The light's position; by default the scene's own light
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     light: Option<Vec3>,
+    /// More lights of the same kind, one option each: the picture is the mean over all; maps and
+    /// measures are of the first
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    more_light: Vec<Vec3>,
     /// A hemispherical light: one map, the other half always in shadow; a cube has all six faces
     #[arg(long)]
     hemisphere: bool,
@@ -51,6 +57,30 @@ pub struct SetupArguments {
     /// How the maps are read
     #[arg(long, value_enum, default_value = "hard")]
     filter: FilterName,
+    /// For disk, mirror, reproject and pcss: taps of a kernel; for pcf: texels along its side
+    #[arg(long, value_name = "N")]
+    taps: Option<u32>,
+    /// For disk, mirror and reproject: the kernel's half-angle in degrees, below 90; by default 1
+    #[arg(
+        long,
+        value_name = "DEGREES",
+        conflicts_with = "kernel_radius",
+        allow_negative_numbers = true
+    )]
+    kernel_angle: Option<f32>,
+    /// For disk, mirror and reproject: the kernel's radius at the receiver, in world units
+    #[arg(long, value_name = "RADIUS", allow_negative_numbers = true)]
+    kernel_radius: Option<f32>,
+    /// For pcss: the light's radius in world units; by default a fiftieth of far
+    #[arg(long, value_name = "RADIUS", allow_negative_numbers = true)]
+    light_size: Option<f32>,
+    /// For pcss: distance from the light of the nearest casters that are searched for all over their
+    /// penumbra; by default an eighth of far
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
+    nearest: Option<f32>,
+    /// For filters with a kernel: each tap 2 x 2 texels
+    #[arg(long)]
+    linear_taps: bool,
     /// What keeps surfaces from shadowing themselves
     #[arg(long, value_enum, default_value = "texel-centre")]
     bias: BiasName,
@@ -119,16 +149,28 @@ fn parse_tau(text: &str) -> Result<f32, String> {
     }
 }
 
-/// Filters by their option names, the planned ones included.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+/// Filters by their option names.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum FilterName {
+    /// One texel
     Hard,
+    /// The hardware's 2 x 2 comparison
     Hardware,
+    /// The naive kernel, texels of one map, to compare with
     Pcf,
+    /// A cone around the receiver's direction, across the seam
     Disk,
+    /// The same with each tap projected again (Osman 2006), to compare with
     Reproject,
+    /// The same with the seam mirrored, to compare with
+    Mirror,
+    /// Soft shadows of a spherical light that harden towards contact
     Pcss,
 }
+
+/// Taps of a kernel, where none are given; and texels along a naive kernel's side.
+const TAPS: u32 = 16;
+const NAIVE_SIDE: u32 = 4;
 
 /// Biases by their option names.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
@@ -171,6 +213,49 @@ impl SetupArguments {
         }
     }
 
+    /// The filter that is asked for.
+    fn filter(&self) -> Result<Filter, CliError> {
+        let kernel = match (self.kernel_angle, self.kernel_radius) {
+            (_, Some(radius)) => Kernel::Radius(radius),
+            (angle, None) => {
+                let angle = angle.unwrap_or(1.0);
+                if !(0.0..90.0).contains(&angle) {
+                    let message = format!("--kernel-angle {angle} is not from 0 to below 90");
+                    return Err(CliError::Usage(message));
+                }
+                Kernel::Tangent(angle.to_radians().tan())
+            }
+        };
+        let given = self.kernel_angle.is_some() || self.kernel_radius.is_some();
+        let soft = self.light_size.is_some() || self.nearest.is_some();
+        let unused = |options: &str| {
+            let message = format!("--filter {} takes no {options}", name(self.filter));
+            Err(CliError::Usage(message))
+        };
+        use FilterName as Name;
+        let of_cone = [Name::Disk, Name::Mirror, Name::Reproject].contains(&self.filter);
+        let single = [Name::Hard, Name::Hardware].contains(&self.filter);
+        match () {
+            () if given && !of_cone => return unused("--kernel-angle or --kernel-radius"),
+            () if soft && self.filter != Name::Pcss => return unused("--light-size or --nearest"),
+            () if single && self.taps.is_some() => return unused("--taps"),
+            () if single && self.linear_taps => return unused("--linear-taps"),
+            () => {}
+        }
+        let taps = Taps { count: self.taps.unwrap_or(TAPS), kernel };
+        Ok(match self.filter {
+            Name::Hard | Name::Hardware => Filter::Single,
+            Name::Pcf => Filter::Naive(self.taps.unwrap_or(NAIVE_SIDE)),
+            Name::Disk => Filter::Disk(taps),
+            Name::Mirror => Filter::Mirror(taps),
+            Name::Reproject => Filter::Reproject(taps),
+            Name::Pcss => {
+                let (radius, nearest) = (self.light_size, self.nearest);
+                Filter::Soft { taps: taps.count, radius, nearest }
+            }
+        })
+    }
+
     /// Opens the scene and makes the frame; warnings go to stderr.
     pub fn frame(
         &self,
@@ -202,11 +287,12 @@ impl SetupArguments {
                 PassesName::Multiview => Passes::Multiview,
             },
             lookup,
-            sampling: match self.filter {
-                FilterName::Hard => Sampling::Nearest,
-                FilterName::Hardware => Sampling::Linear,
-                planned => return Err(not_built("--filter", planned, "hard, hardware")),
+            sampling: match (self.filter, self.linear_taps) {
+                (FilterName::Hardware, _) => Sampling::Linear,
+                (FilterName::Hard, _) | (_, false) => Sampling::Nearest,
+                (_, true) => Sampling::Linear,
             },
+            filter: self.filter()?,
             image,
             near: self.near,
             far: self.far,
@@ -242,14 +328,14 @@ impl SetupArguments {
         let mut camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
         camera.eye = self.camera.unwrap_or(camera.eye);
         camera.target = self.look_at.unwrap_or(camera.target);
-        let frame = Frame::new(&scene, light.position, axis, hemispherical, &camera, settings)?;
+        let frame_at =
+            |position| Frame::new(&scene, position, axis, hemispherical, &camera, settings.clone());
+        let more: Vec<_> = self.more_light.iter().map(|&position| frame_at(position)).collect();
+        let more: Result<Vec<Frame>, _> = more.into_iter().collect();
+        let frame = frame_at(light.position)?;
+        let frame = frame.with_lights(more?.into_iter().map(|frame| frame.light))?;
         Ok((scene.name, Frame { color: light.color, ..frame }))
     }
-}
-
-/// The error for a value that is named and not built.
-fn not_built(option: &'static str, value: impl ValueEnum, built: &'static str) -> CliError {
-    CliError::NotBuilt { option, value: name(value), built }
 }
 
 fn name(value: impl ValueEnum) -> String {

@@ -11,11 +11,13 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 
 use crate::render::{
-    AMBIENT, Frame, FrameError, Lookup, Method, Picture, Rendering, SPECULAR, Vertex, View, float,
+    AMBIENT, Filter, Frame, FrameError, Kernel, Lookup, Method, Picture, Rendering, SPECULAR, Taps,
+    Vertex, View, float,
 };
 use crate::scalar::caster::{dpsm_caster_keep, dpsm_caster_vertex};
 use crate::scalar::float::{self as scalar, Float, Vec2, Vec4, select};
 use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
+use crate::scalar::lights::{dpsm_lights_turn, dpsm_lights_visibility};
 use crate::scalar::maps::DepthMaps;
 use crate::scalar::shade::{dpsm_highlight, dpsm_lambert, dpsm_shade};
 use crate::scalar::visibility::{DpsmReceiverVertex, dpsm_receiver_vertex, dpsm_visibility_vertex};
@@ -28,8 +30,17 @@ pub fn render(frame: &Frame) -> Result<Rendering, FrameError> {
     // a pixel takes its surface, its depth and its colour
     reserve::<(Visible, f32, [u8; 4])>("--image", u64::from(width) * u64::from(height))?;
     let maps = timed_maps(frame, &mut timings)?;
+    let more = frame.more.iter().map(|&light| {
+        let own = Frame { light, more: Vec::new(), ..frame.clone() };
+        let maps = timed_maps(&own, &mut timings)?;
+        Ok((own, maps))
+    });
+    let more: Vec<(Frame, DepthMaps)> = more.collect::<Result<_, FrameError>>()?;
     let start = Instant::now();
-    let lit = camera_pass(frame, &maps);
+    let lit = match more.as_slice() {
+        [] => camera_pass(frame, &maps),
+        more => lights_pass(frame, &maps, more),
+    };
     timings.push(("camera".to_string(), start.elapsed()));
     let mut views = Vec::new();
     if frame.settings.views {
@@ -190,6 +201,37 @@ fn seen_by_camera(frame: &Frame) -> Vec<Visible> {
     let nearness =
         |index: u32, fragment: &Fragment| opaque(frame, index, fragment).then_some(fragment.depth);
     visible(&frame.triangles, &clip, settings.image, view.near, nearness)
+}
+
+/// The lit image as the mean over several lights, as camera.wesl's `lights_fragment`.
+fn lights_pass(frame: &Frame, maps: &DepthMaps, more: &[(Frame, DepthMaps)]) -> Picture {
+    let Frame { light, view, settings, .. } = frame;
+    let seen = seen_by_camera(frame);
+    let taps = frame.taps();
+    let to_world = |v: scalar::Vec3<f32>| light.right * v.x + light.up * v.y + light.forward * v.z;
+    let first = Vec2::new(1.0, 0.0);
+    color(&seen, settings.image, |triangle, weights| {
+        let surface = Surface::new(frame, triangle, weights);
+        let world = light.position + to_world(surface.p);
+        let plane = to_world(frame.light_normal(triangle));
+        let normal = to_world(surface.normal);
+        let shaded = |own: &Frame, maps: &DepthMaps| {
+            let light = own.light;
+            let p = dpsm_to_light(world, light);
+            let radius = match settings.filter {
+                Filter::Disk(Taps { kernel: Kernel::Radius(radius), .. }) => radius,
+                Filter::Disk(Taps { kernel: Kernel::Tangent(tangent), .. }) => tangent * p.length(),
+                _ => 0.0,
+            };
+            let share = dpsm_lights_visibility(maps, world, plane, light, taps, radius, first);
+            let eye = dpsm_to_light(float(view.eye), light);
+            let normal = dpsm_lights_turn(normal, light);
+            Surface { p, normal, albedo: surface.albedo }.shade(own, eye, share)
+        };
+        let others = more.iter().map(|(own, maps)| shaded(own, maps));
+        let sum = others.fold(shaded(frame, maps), |sum, part| sum + part);
+        sum / (1 + more.len()) as f32
+    })
 }
 
 /// The lit image.

@@ -19,7 +19,8 @@ const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
     check_image(device, frame.settings.image)?;
     let mesh = MeshBuffers::new(device, frame)?;
-    let maps = ShadowMaps::new(device, frame, &mesh)?;
+    let lights: Vec<_> = std::iter::once(frame.light).chain(frame.more.iter().copied()).collect();
+    let maps = ShadowMaps::with_lights(device, frame, &mesh, &lights)?;
     let mut timings = vec![device.time_warm("maps", |encoder, stamps| {
         maps.record(encoder, &mesh, stamps);
     })?];
@@ -27,6 +28,9 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
     let projection = frame.settings.method.projection();
     let stages = match (projection, frame.settings.lookup) {
         (Projection::Cube, _) => ["pixel_lookup", "cube_lookup_fragment"],
+        (Projection::Paraboloid, Lookup::Pixel) if !frame.more.is_empty() => {
+            ["pixel_lookup", "lights_fragment"]
+        }
         (Projection::Paraboloid, Lookup::Pixel) => ["pixel_lookup", "pixel_lookup_fragment"],
         (Projection::Paraboloid, Lookup::Vertex) => ["vertex_lookup", "vertex_lookup_fragment"],
     };
@@ -90,6 +94,7 @@ struct Camera<'a> {
     module: wgpu::ShaderModule,
     uniform: wgpu::Buffer,
     sampler: wgpu::Sampler,
+    lights: wgpu::Buffer,
     maps: &'a ShadowMaps,
 }
 
@@ -124,9 +129,13 @@ impl<'a> Camera<'a> {
         let biases = [frame.bias, quantum, tolerance, settings.window(), cosine];
         words.extend(biases.map(f32::to_bits));
         words.extend([kind, 0, 0]);
+        words.extend(frame.filter_words());
         let uniform = uniform_buffer(device, &words)?;
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
-        Ok(Self { module, uniform, sampler, maps })
+        let all: Vec<u32> = maps.lights.iter().flat_map(light_words).collect();
+        let bytes = bytemuck::cast_slice(&all);
+        let lights = device.upload("light bytes", bytes, wgpu::BufferUsages::STORAGE)?;
+        Ok(Self { module, uniform, sampler, lights, maps })
     }
 
     /// Draws all triangles with one pair of entry points and reads the picture back.
@@ -157,7 +166,8 @@ impl<'a> Camera<'a> {
         let (color, depth, group) = device.step(name, || {
             let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
             let depth = target(DEPTH, wgpu::TextureUsages::empty());
-            (color, depth, self.group(device, &pipeline, mesh))
+            let many = stages.contains(&"lights_fragment");
+            (color, depth, self.group(device, &pipeline, mesh, many))
         })?;
         let color_view = color.create_view(&Default::default());
         let depth_view = depth.create_view(&Default::default());
@@ -218,25 +228,29 @@ impl<'a> Camera<'a> {
         device: &Device,
         pipeline: &wgpu::RenderPipeline,
         mesh: &MeshBuffers,
+        many: bool,
     ) -> wgpu::BindGroup {
+        let lights = wgpu::BindGroupEntry { binding: 7, resource: self.lights.as_entire_binding() };
+        let mut entries = vec![
+            wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(&self.maps.view),
+            },
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: wgpu::BindingResource::Sampler(&self.sampler),
+            },
+            wgpu::BindGroupEntry { binding: 3, resource: mesh.positions.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 4, resource: mesh.indices.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 5, resource: mesh.surfaces.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 6, resource: mesh.masks.as_entire_binding() },
+        ];
+        entries.extend(many.then_some(lights));
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&self.maps.view),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 2,
-                    resource: wgpu::BindingResource::Sampler(&self.sampler),
-                },
-                wgpu::BindGroupEntry { binding: 3, resource: mesh.positions.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 4, resource: mesh.indices.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 5, resource: mesh.surfaces.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 6, resource: mesh.masks.as_entire_binding() },
-            ],
+            entries: &entries,
         })
     }
 }

@@ -13,7 +13,7 @@ mod silhouette;
 pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straight, left_out};
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
-pub use penumbra::{PenumbraError, coverage, penumbra_error};
+pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
 pub use shadow::{Judgement, ShadowError, judge, shadow_error};
 
 use fastrand::Rng;
@@ -25,6 +25,9 @@ use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::DepthMaps;
 use crate::truth::{Hit, Ray, Truth};
+
+/// Width of the seam band in texels on either side.
+const SEAM_TEXELS: f64 = 5.0;
 
 /// A frame, its maps and the truth about its scene.
 #[derive(Debug)]
@@ -159,6 +162,11 @@ impl<'a> Bench<'a> {
     /// The map that holds a point, hemisphere or face, and the place in it.
     pub fn place(&self, point: &Point) -> (u32, Vec2<f64>) {
         self.projection.place(self.to_light(point.world))
+    }
+
+    /// True within five texels of the seam between hemispheres, or of a face's edge.
+    pub fn at_seam(&self, uv: Vec2<f64>) -> bool {
+        self.projection.radius(uv) >= 1.0 - SEAM_TEXELS * self.texel()
     }
 
     /// The angle that a texel spans at a place.

@@ -22,9 +22,6 @@ const AZIMUTHS: u32 = 16;
 /// Halvings of a ring's gap: the edge is found to 1/1024 of it.
 const HALVINGS: u32 = 10;
 
-/// Width of the seam band in texels on either side.
-const SEAM_TEXELS: f64 = 5.0;
-
 /// What the map says of a point, what is true, and why they may differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Judgement {
@@ -89,10 +86,11 @@ fn texel_place(bench: &Bench<'_>, [x, y]: [f64; 2]) -> Vec2<f64> {
 
 /// True where the rays over the texels that a lookup reads do not all agree, or miss the plane.
 fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) -> bool {
-    let reach = match bench.maps.sampling {
+    let own = match bench.maps.sampling {
         Sampling::Nearest => 0.0,
         Sampling::Linear => 1.0,
     };
+    let reach = own + bench.kernel_texels(point).ceil();
     let sees = bench.sees(point);
     let steps = f64::from(FOOTPRINT_RAYS - 1) / (1.0 + 2.0 * reach);
     (0..FOOTPRINT_RAYS * FOOTPRINT_RAYS).any(|i| {
@@ -207,7 +205,7 @@ pub fn shadow_error(
     for (judgement, distance) in judged {
         let [u, v] = judgement.uv;
         let uv = Vec2::new(u, v);
-        let seam = bench.projection.radius(uv) >= 1.0 - SEAM_TEXELS * bench.texel();
+        let seam = bench.at_seam(uv);
         error.seam_points += usize::from(seam);
         error.unmapped += usize::from(judgement.hemisphere >= bench.frame.light.hemispheres);
         error.edge_points += usize::from(judgement.edge);

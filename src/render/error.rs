@@ -123,6 +123,22 @@ pub enum FrameError {
         "the exact and hybrid methods draw a list of triangles for each map, so they have no multiview; choose --passes atlas, or --method vertex, fragment-depth or tessellated"
     )]
     Multiview,
+    /// A filter that cannot be.
+    #[error("the filter has {0}")]
+    Filter(String),
+    /// Several lights where there is but one.
+    #[error(
+        "several lights need paraboloid maps, --lookup pixel, and --filter hard, hardware or disk"
+    )]
+    Lights,
+    /// A filter with a kernel where it has none.
+    #[error("filters with a kernel need {needs}; choose --filter hard or hardware, or {remedy}")]
+    Kernel {
+        /// What they need.
+        needs: &'static str,
+        /// What has it.
+        remedy: &'static str,
+    },
     /// The camera looks nowhere.
     #[error("the camera's eye and target are the same point {0}; set --camera and --look-at apart")]
     Camera(Vec3),

@@ -1,6 +1,6 @@
 //! What the maps of a light are: two disks, or six faces of a cube; one interface to both.
 
-use super::{Bias, Frame, Method};
+use super::{Bias, Filter, Frame, Method};
 use crate::scalar::bias::{
     dpsm_bias_footprint, dpsm_bias_without_normal, dpsm_lookup_biased, dpsm_lookup_texel_centre,
     dpsm_lookup_texel_centre_or_own, dpsm_receiver,
@@ -43,11 +43,14 @@ impl Method {
 }
 
 impl Frame {
-    /// The shadow test with the frame's bias: 1 lit, 0 in shadow.
+    /// The share of the light with the frame's filter and bias: 1 lit, 0 in shadow.
     ///
     /// `p`: light-space position; `normal`: the surface's own there, in light space, of any length
     /// and side; zero where it is not known.
     pub fn visibility(&self, maps: &DepthMaps, p: Vec3<f32>, normal: Vec3<f32>) -> f32 {
+        if self.settings.filter != Filter::Single {
+            return self.filtered(maps, p, normal);
+        }
         let at = self.lookup(p, normal);
         match at.mapped {
             true => maps.compare(at.coordinates, at.layer, at.depth),

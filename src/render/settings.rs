@@ -104,6 +104,87 @@ impl Bias {
     pub const WITHOUT_NORMAL: Self = Self::WithoutNormal(0.1);
 }
 
+/// How the lookups of a receiver are averaged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// One lookup: the hard test or 2 x 2 comparisons, as `Settings::sampling` and the bias say.
+    Single,
+    /// `dpsm_filter_pcf`: as many texels along a side around the receiver's own.
+    Naive(u32),
+    /// `dpsm_filter_disk`.
+    Disk(Taps),
+    /// `dpsm_filter_mirror`.
+    Mirror(Taps),
+    /// `dpsm_filter_reproject`.
+    Reproject(Taps),
+    /// `dpsm_pcss`.
+    Soft {
+        /// Taps of the search, and of the filter.
+        taps: u32,
+        /// The light's radius in world units; by default a fiftieth of far.
+        radius: Option<f32>,
+        /// Distance of the nearest casters that are found all over their penumbra; by default an
+        /// eighth of far.
+        nearest: Option<f32>,
+    },
+}
+
+/// Taps over a kernel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taps {
+    /// How many.
+    pub count: u32,
+    /// What they are spread over.
+    pub kernel: Kernel,
+}
+
+/// A cone around a receiver's direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kernel {
+    /// Given by the tangent of its half-angle.
+    Tangent(f32),
+    /// Given by its radius in world units at the receiver.
+    Radius(f32),
+}
+
+impl Kernel {
+    /// The tangent of its half-angle at a distance.
+    pub fn tangent(self, distance: f32) -> f32 {
+        match self {
+            Self::Tangent(tangent) => tangent,
+            Self::Radius(radius) => radius / distance.max(super::SMALLEST),
+        }
+    }
+}
+
+/// Most taps of a filter, and texels along a side of a naive kernel.
+pub const MOST_TAPS: u32 = 1024;
+
+/// Widest kernel's tangent: what `dpsm_kernel` is specified for.
+const WIDEST: f32 = 1024.0;
+
+impl Filter {
+    /// What is wrong with it, if anything.
+    pub(super) fn fault(self) -> Option<String> {
+        let (count, sizes) = match self {
+            Self::Single => return None,
+            Self::Naive(side) => (side, vec![]),
+            Self::Disk(taps) | Self::Mirror(taps) | Self::Reproject(taps) => match taps.kernel {
+                Kernel::Tangent(size) | Kernel::Radius(size) => (taps.count, vec![size]),
+            },
+            Self::Soft { taps, radius, nearest } => {
+                (taps, [radius, nearest].into_iter().flatten().collect())
+            }
+        };
+        if !(1..=MOST_TAPS).contains(&count) {
+            return Some(format!("{count} taps: there may be 1 to {MOST_TAPS}"));
+        }
+        let bad = |size: &&f32| !(0.0..=WIDEST).contains(*size);
+        let bad = sizes.iter().find(bad);
+        bad.map(|size| format!("a size of {size}: it may be 0 to {WIDEST}"))
+    }
+}
+
 /// The settings of a rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -130,6 +211,8 @@ pub struct Settings {
     pub lookup: Lookup,
     /// How the maps are sampled: the hard test, or 2 x 2 comparisons.
     pub sampling: Sampling,
+    /// How the lookups are averaged; all but `Single` are for paraboloid maps and lookups by pixel.
+    pub filter: Filter,
     /// Width and height of the lit image in pixels.
     pub image: [u32; 2],
     /// Near sphere's radius; by default a thousandth of far.
@@ -156,6 +239,7 @@ impl Default for Settings {
             keep_lists: false,
             lookup: Lookup::Pixel,
             sampling: Sampling::Nearest,
+            filter: Filter::Single,
             image: [960, 720],
             near: None,
             far: None,

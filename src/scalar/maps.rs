@@ -7,6 +7,12 @@ pub trait Maps<T> {
     /// textureSampleCompareLevel: the share of the sampled texels whose stored depth is not less
     /// than `reference`, at texture coordinates `st` of the layer.
     fn compare(&self, st: Vec2<T>, layer: u32, reference: T) -> T;
+
+    /// textureDimensions: texels along each side.
+    fn size(&self) -> Vec2<T>;
+
+    /// textureLoad: the depth stored in a texel, whose coordinates are clamped to the texture.
+    fn load(&self, texel: Vec2<T>, layer: u32) -> T;
 }
 
 /// How a comparison sampler reads.
@@ -70,5 +76,14 @@ impl<T: Float> Maps<T> for DepthMaps {
         let mix = |a: T, b: T, k: f64| a * T::lit(1.0 - k) + b * T::lit(k);
         let row = |y: i64| mix(lit(left, y), lit(left.saturating_add(1), y), x - x.floor());
         mix(row(top), row(top.saturating_add(1)), y - y.floor())
+    }
+
+    fn size(&self) -> Vec2<T> {
+        Vec2::splat(T::lit(self.size.into()))
+    }
+
+    fn load(&self, texel: Vec2<T>, layer: u32) -> T {
+        let [x, y] = [texel.x, texel.y].map(|c| c.value() as i64);
+        T::lit(self.depths[self.index(x, y, layer)].into())
     }
 }

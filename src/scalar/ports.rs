@@ -6,10 +6,14 @@ use super::classify::*;
 use super::cube::*;
 use super::depth::*;
 use super::edge::*;
+use super::filter::*;
 use super::float::{Float, Vec2, Vec3, Vec4};
 use super::hemisphere::*;
+use super::kernel::*;
 use super::light::*;
+use super::lights::*;
 use super::paraboloid::*;
+use super::pcss::*;
 use super::shade::*;
 use super::tessellate::*;
 use super::triangle::*;
@@ -62,6 +66,17 @@ impl<T> Flat<T> for u32 {
     }
 }
 
+impl<T, V: Flat<T>> Flat<T> for [V; 2] {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        Some([V::read(words)?, V::read(words)?])
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        for part in self {
+            part.write(words);
+        }
+    }
+}
+
 impl<T, V: Flat<T>> Flat<T> for [V; 3] {
     fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
         Some([V::read(words)?, V::read(words)?, V::read(words)?])
@@ -106,10 +121,15 @@ flat! {
     DpsmCasterFragment { depth, keep }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
-    DpsmReceiver { plane, distance }
     DpsmTriangle { first, second, third, plane, span }
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
+    DpsmReceiver { plane, distance }
+    DpsmKernel { axis, reach, hemisphere }
+    DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
+    DpsmTap { uv, hemisphere }
+    DpsmTaps { count, kind, quantum, tolerance }
+    DpsmBlockers { tangents, count, unmapped }
 }
 
 impl<T> Flat<T> for DpsmClass {
@@ -238,5 +258,13 @@ ports! {
         dpsm_cube_lookup_without_normal, dpsm_cube_lookup_rising,
         dpsm_cube_direction, dpsm_cube_distance, dpsm_cube_outside,
     }
+    kernel {
+        dpsm_kernel_tangent, dpsm_kernel, dpsm_kernel_disk, dpsm_kernel_tap,
+        dpsm_kernel_mirrored, dpsm_kernel_projected, dpsm_kernel_ring, dpsm_kernel_turn,
+        dpsm_kernel_rotation, dpsm_kernel_guard,
+    }
+    filter { dpsm_filter_reader, dpsm_filter_lookup }
+    pcss { dpsm_pcss_tangent, dpsm_pcss_found, dpsm_pcss_width }
+    lights { dpsm_lights_turn }
     shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight }
 }

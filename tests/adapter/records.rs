@@ -3,7 +3,9 @@
 use dpsm::reflect::{Component, Kind, Signature};
 use dpsm::scalar::bias::dpsm_receiver;
 use dpsm::scalar::classify::dpsm_classify_part;
+use dpsm::scalar::filter::{DpsmTaps, dpsm_filter_reader};
 use dpsm::scalar::float::{Vec2, Vec3};
+use dpsm::scalar::kernel::dpsm_kernel;
 use dpsm::scalar::ports::{Flat, Word};
 use dpsm::scalar::triangle::dpsm_triangle;
 use fastrand::Rng;
@@ -29,6 +31,8 @@ pub fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
             // as many halvings as it has binary digits behind the first, evenly
             ("path", 1) => words.push(Word::Integer(1 + (rng.u32(0..4095) >> rng.u32(0..12)))),
             ("weights", 3) => words.extend([0; 3].map(|_| Word::Integer(rng.u32(0..9)))),
+            ("pixel", 2) => words.extend([0; 2].map(|_| Word::Integer(rng.u32(..)))),
+            ("count", 1) => words.push(Word::Integer(rng.u32(1..4096))),
             _ if integers => words.push(Word::Integer(rng.u32(0..2))),
             ("light", _) if centred => light(rng).write(&mut words),
             _ if wild => words.extend(components.iter().map(|component| any(component, rng))),
@@ -44,6 +48,29 @@ pub fn record(signature: &Signature, rng: &mut Rng) -> Vec<Word<f32>> {
             ("receiver", 5) => {
                 let (p, normal) = (point(rng, -24, 24), unit(rng) * spread(rng, -24, 24));
                 dpsm_receiver(p, normal).write(&mut words);
+            }
+            ("offset" | "direction" | "lean", 2) => disk(rng).write(&mut words),
+            ("tap", 3) => (disk_a, rng.u32(0..2)).write(&mut words),
+            ("kernel", 4) => {
+                dpsm_kernel(unit(rng), spread(rng, -8, 1).abs()).write(&mut words);
+            }
+            ("taps", 4) => {
+                (rng.u32(1..64), rng.u32(0..2), rng.f32(), rng.f32()).write(&mut words);
+            }
+            ("reader", 16) => {
+                let taps = DpsmTaps {
+                    count: 16,
+                    kind: rng.u32(0..2),
+                    quantum: 1e-5,
+                    tolerance: 1e-3 * rng.f32(),
+                };
+                let receiver = dpsm_receiver(point(rng, -24, 24), unit(rng));
+                dpsm_filter_reader(receiver, light(rng), taps).write(&mut words);
+            }
+            ("found", 3) => (rng.f32(), rng.u32(0..64), rng.u32(0..64)).write(&mut words),
+            ("at", 6) => {
+                let (layer, mapped) = (rng.u32(0..2), rng.u32(0..4) > 0);
+                (disk_a, rng.f32(), layer, layer, mapped).write(&mut words);
             }
             ("normal_z", 1) => uniform(rng, -1.0, 1.0).write(&mut words),
             ("bow" | "bow_before" | "bow_after", 1) => spread(rng, -20, 0).abs().write(&mut words),

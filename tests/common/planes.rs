@@ -109,6 +109,14 @@ impl Maps<f32> for PlaneMap {
     fn compare(&self, st: Vec2<f32>, layer: u32, reference: f32) -> f32 {
         f32::from(u8::from(reference <= self.depth(st, layer)))
     }
+
+    fn size(&self) -> Vec2<f32> {
+        Vec2::splat(self.light.size)
+    }
+
+    fn load(&self, texel: Vec2<f32>, layer: u32) -> f32 {
+        self.depth((texel + Vec2::splat(0.5)) / self.light.size, layer)
+    }
 }
 
 /// A texel of a kernel's window, as often one of its corners as any.
