@@ -237,8 +237,9 @@ ports! {
     }
     triangle {
         dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_inside,
-        dpsm_triangle_covers, dpsm_triangle_distance, dpsm_triangle_behind, dpsm_triangle_disk, dpsm_triangle_fragment,
-        dpsm_triangle_weights, dpsm_triangle_hull, dpsm_triangle_tip, dpsm_triangle_needle,
+        dpsm_triangle_covers, dpsm_triangle_distance, dpsm_triangle_disk, dpsm_triangle_behind,
+        dpsm_triangle_fragment, dpsm_triangle_weights, dpsm_triangle_hull, dpsm_triangle_tip,
+        dpsm_triangle_needle,
     }
     classify {
         dpsm_classify_usable, dpsm_classify, dpsm_classify_flat_error, dpsm_classify_distance,
