@@ -103,7 +103,11 @@ impl<'a> Camera<'a> {
         let module = shader(
             device,
             "camera.wesl",
-            concat!(include_str!("camera.wesl"), include_str!("mask.wesl")),
+            concat!(
+                include_str!("camera.wesl"),
+                include_str!("shadow.wesl"),
+                include_str!("mask.wesl")
+            ),
         )?;
         let view = &frame.view;
         let rows = [
