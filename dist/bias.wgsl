@@ -304,7 +304,7 @@ fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
 /// allowed.
 ///
-/// quantum: 2^-16 for 16 bits, 2^-24 for 24, 0 for a float, or more. tolerance: 0 for exact maps.
+/// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
@@ -435,8 +435,8 @@ fn dpsm_lookup_along_centre(
     return at;
 }
 
-/// Where a receiver looks, and the depth that it compares, less a window's bias (dpsm_bias_footprint
-/// or dpsm_bias_without_normal) and the slack.
+/// Where a receiver looks, and the depth that it compares, less a window's bias
+/// (dpsm_bias_footprint or dpsm_bias_without_normal) and the slack.
 ///
 /// Domain: as for dpsm_lookup_texel_centre. A lit plane is never shadowed by itself at any texel of
 /// the window.

@@ -269,7 +269,7 @@ fn dpsm_cube_lookup_along_centre(
 /// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
 /// slack. Along a face's axis a plane is at h / (n . (x, y, 1)), so it is nearest in a corner.
 ///
-/// Domain: as dpsm_cube_lookup_texel_centre, texels >= 0. A lit plane is never shadowed by itself at
+/// Domain: as dpsm_cube_lookup_along_centre, texels >= 0. A lit plane is never shadowed by itself at
 /// any texel of the window.
 fn dpsm_cube_lookup_footprint(
     p: vec3<f32>,

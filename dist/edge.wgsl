@@ -166,13 +166,13 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
 }
 
 /// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
-/// between it and its chord, at most tau texels, so that no hole is left beside a triangle that is
-/// drawn with chords. Everything is on the right of it for ends in one direction, as their
+/// between it and its chord, at most tau texels, behind the seam 4 tau, so that no hole is left
+/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one direction, as their
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
-/// ones may leave holes of the rest.
+/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are
+/// within 4 tau of their arcs for ends up to r = 4/3; farther ones may leave holes of the rest.
 fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);
     if !(dot(normal, normal) > 0.0) {
@@ -181,7 +181,7 @@ fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec
     if !dpsm_edge_flat(a, b, light, tau) {
         return vec4<f32>(0.5 * normal, 0.0);
     }
-    // the chord is on the right of an arc that bows to the left
+    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
     if normal.z >= 0.0 {
         let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
         return vec4<f32>(0.5 * normal, snap);

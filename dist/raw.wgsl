@@ -269,7 +269,7 @@ fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
 /// allowed.
 ///
-/// quantum: 2^-16 for 16 bits, 2^-24 for 24, 0 for a float, or more. tolerance: 0 for exact maps.
+/// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
@@ -485,7 +485,7 @@ fn dpsm_filter_reader(receiver: DpsmReceiver, light: DpsmLight, taps: DpsmTaps) 
 
 /// Where a tap reads, and the depth that it compares: that of the receiver's plane in the
 /// direction of the texel's centre (hard taps), or in the tap's own, less what the plane may fall
-/// within a texel around it (linear ones).
+/// within a texel around it (linear ones); the receiver's own where the plane is not met.
 ///
 /// Domain: as for dpsm_receiver_distance; tap.uv with r <= 1. A lit plane is never shadowed by
 /// itself.
@@ -493,13 +493,23 @@ fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> Dps
     var place = tap.uv * reader.scale + reader.middle;
     var uv = tap.uv;
     if reader.kind == DPSM_TAP_HARD {
-        place = floor(place) + 0.5;
+        place = clamp(floor(place), vec2<f32>(), vec2<f32>(light.size - 1.0)) + 0.5;
         uv = (place - reader.middle) * reader.unscale;
     }
-    let l = dpsm_receiver_distance(reader.receiver, uv, tap.hemisphere);
+    let met = dpsm_receiver_distance(reader.receiver, uv, tap.hemisphere);
+    // beyond the plane's horizon what is nearer than the receiver shadows it
+    let is_met = met > DPSM_SMALLEST;
+    let l = min(select(reader.receiver.distance, met, is_met), light.far);
     var depth = l * reader.depth.x - reader.depth.y;
     if reader.kind != DPSM_TAP_HARD {
-        depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l), uv, 1.0, light);
+        if is_met {
+            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l), uv, 1.0, light);
+        } else {
+            // within the window the plane is no nearer than its height over the chord
+            let chord = sqrt(dpsm_bias_window(uv, 1.0, light));
+            let plane = reader.receiver.plane.w / max(chord, DPSM_SMALLEST);
+            depth = min(depth, plane * reader.depth.x - reader.depth.y);
+        }
     }
     return DpsmLookup(
         dpsm_light_coordinates(light, tap.hemisphere, place * reader.texel),

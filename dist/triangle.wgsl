@@ -219,13 +219,13 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
 }
 
 /// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
-/// between it and its chord, at most tau texels, so that no hole is left beside a triangle that is
-/// drawn with chords. Everything is on the right of it for ends in one direction, as their
+/// between it and its chord, at most tau texels, behind the seam 4 tau, so that no hole is left
+/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one direction, as their
 /// triangle covers nothing. An arc that is not moved is exactly negated when turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are within 4 tau of their arcs for ends up to r = 4/3; farther
-/// ones may leave holes of the rest.
+/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are
+/// within 4 tau of their arcs for ends up to r = 4/3; farther ones may leave holes of the rest.
 fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);
     if !(dot(normal, normal) > 0.0) {
@@ -234,7 +234,7 @@ fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec
     if !dpsm_edge_flat(a, b, light, tau) {
         return vec4<f32>(0.5 * normal, 0.0);
     }
-    // the chord is on the right of an arc that bows to the left
+    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
     if normal.z >= 0.0 {
         let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
         return vec4<f32>(0.5 * normal, snap);
@@ -407,8 +407,8 @@ fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
 /// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
 /// vertex.
 ///
-/// Domain: r <= 4, inside the triangle. Bound: (24 farthest / sin + 16 l) eps / cos absolute, sin as
-/// for dpsm_triangle_plane, cos that of the angle of incidence.
+/// Domain: r <= 4, inside the triangle. Bound: (24 farthest / sin + 16 l) eps / cos absolute, sin
+/// as for dpsm_triangle_plane, cos that of the angle of incidence.
 fn dpsm_triangle_distance(triangle: DpsmTriangle, uv: vec2<f32>) -> f32 {
     let terms = dpsm_edge_terms(uv);
     let whole = 1.0 + dot(uv, uv);
@@ -467,7 +467,11 @@ fn dpsm_triangle_weights(
     uv: vec2<f32>,
 ) -> vec3<f32> {
     let d = dpsm_edge_terms(uv).xyz;
-    let volumes = vec3<f32>(dot(cross(b, c - b), d), dot(cross(c, a - c), d), dot(cross(a, b - a), d));
+    let volumes = vec3<f32>(
+        dot(cross(b, c - b), d),
+        dot(cross(c, a - c), d),
+        dot(cross(a, b - a), d),
+    );
     let sum = volumes.x + volumes.y + volumes.z;
     if abs(sum) < 0x1p-120 {
         return vec3<f32>(1.0, 0.0, 0.0);
@@ -490,8 +494,8 @@ struct DpsmHull {
 /// tips: a right triangle around the rectangle along its longest chord.
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: a triangle around the whole map.
-/// Domain: as for dpsm_triangle_plane. It holds every point that dpsm_triangle_covers
-/// accepts.
+/// Domain: as for dpsm_triangle_plane. It holds every point of the
+/// triangle, and of what its lines are moved by all that a chord beside it leaves open.
 fn dpsm_triangle_hull(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmHull {
     let disk_a = dpsm_project(a);
     let disk_b = dpsm_project(b);
@@ -573,5 +577,6 @@ fn dpsm_triangle_needle(
     let high = vec2<f32>(max(max(x.x, x.y), 0.0), max(max(y.x, y.y), 0.0)) + bow;
     let sides = high - low;
     let corner = a + right * low.x + up * low.y;
-    return DpsmHull(corner, corner + right * (sides.x + sides.x), corner + up * (sides.y + sides.y));
+    let doubled = sides + sides;
+    return DpsmHull(corner, corner + right * doubled.x, corner + up * doubled.y);
 }

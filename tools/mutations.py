@@ -584,6 +584,10 @@ MUTATIONS = [
      "maps", "same::maps_by_multiview_are_those_one_by_one"),
     ("src/gpu/maps.rs", "layers_view(&texture, layer, views);", "layers_view(&texture, layer - layer % 2, views);",
      "maps", "same::lights_with_two_maps_and_with_one_share_a_texture_by_multiview"),
+    ("filter.rs", "let is_met = met > T::lit(DPSM_SMALLEST);", "let is_met = true;",
+     "filter", "horizon::grazing_receivers_behind_a_wall_all_around_are_in_shadow"),
+    ("filter.rs", "texel.x.clamp(zero, last.x)", "texel.x",
+     "filter", "horizon::taps_at_the_maps_border_compare_with_the_texel_that_is_read"),
     # biases
     ("bias.rs", "let facing = receiver.plane.xyz().dot(d);", "let facing = whole * (receiver.plane.w / receiver.distance);",
      "bias", "no_plane_shadows_itself_along_the_texels_centre"),

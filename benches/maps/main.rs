@@ -1,8 +1,8 @@
 //! What making the maps costs, by method, and whether the maps are right.
 //!
 //! `cargo bench --bench maps [-- ratios [SCENE...] | parts | triangles | sizes | lights | right]`;
-//! without an argument all but `right`, which takes ten minutes. Tables are Markdown; `triangles`, `sizes` and
-//! `lights` also draw docs/pictures/cost-*.svg.
+//! without an argument all but `right`, which takes ten minutes. Tables are Markdown; `triangles`,
+//! `sizes` and `lights` also draw docs/pictures/cost-*.svg.
 
 mod cost;
 mod place;

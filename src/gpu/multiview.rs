@@ -23,6 +23,7 @@ const MULTIVIEW: &str = "var<private> view: u32;\nfn hemisphere() -> u32 {\n    
 pub fn multiview_text(text: &str) -> String {
     let mut derived = String::new();
     let mut in_entry_point = false;
+    debug_assert!(text.contains(SINGLE), "the text that multiview replaces");
     for line in text.replace(SINGLE, MULTIVIEW).lines() {
         in_entry_point |= ["@vertex", "@fragment"].contains(&line);
         let ends = in_entry_point && line.ends_with('{');

@@ -93,7 +93,7 @@ pub fn dpsm_edge_line<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>, tau
     if !dpsm_edge_flat(a, b, light, tau) {
         return (normal * half).extend(zero);
     }
-    // the chord is on the right of an arc that bows to the left
+    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
     if normal.z >= zero {
         let snap = T::lit(DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
         return (normal * half).extend(snap);

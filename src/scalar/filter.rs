@@ -1,7 +1,8 @@
 //! Port of `wgsl/filter.wesl`.
 
 use super::bias::{
-    DPSM_BIAS_DISTANCE, DpsmReceiver, dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver_distance,
+    DPSM_BIAS_DISTANCE, DpsmReceiver, dpsm_bias_footprint, dpsm_bias_slack, dpsm_bias_window,
+    dpsm_receiver_distance,
 };
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::dpsm_hemisphere;
@@ -11,7 +12,7 @@ use super::kernel::{
 };
 use super::light::{DPSM_ATLAS, DpsmLight, dpsm_light_coordinates, dpsm_light_layer};
 use super::maps::Maps;
-use super::paraboloid::{dpsm_project_own, dpsm_texel_width};
+use super::paraboloid::{DPSM_SMALLEST, dpsm_project_own, dpsm_texel_width};
 use super::visibility::{DpsmLookup, dpsm_lookup};
 
 /// A tap of one texel, compared along the texel's centre.
@@ -96,14 +97,28 @@ pub fn dpsm_filter_lookup<T: Float>(
     let mut place = tap.uv * reader.scale + middle;
     let mut uv = tap.uv;
     if reader.kind == DPSM_TAP_HARD {
-        place = place.floor() + Vec2::splat(T::lit(0.5));
+        let last = Vec2::splat(light.size - T::lit(1.0));
+        let texel = place.floor();
+        let zero = T::lit(0.0);
+        place = Vec2::new(texel.x.clamp(zero, last.x), texel.y.clamp(zero, last.y))
+            + Vec2::splat(T::lit(0.5));
         uv = (place - middle) * reader.unscale;
     }
-    let l = dpsm_receiver_distance(reader.receiver, uv, tap.hemisphere);
+    let met = dpsm_receiver_distance(reader.receiver, uv, tap.hemisphere);
+    // beyond the plane's horizon what is nearer than the receiver shadows it
+    let is_met = met > T::lit(DPSM_SMALLEST);
+    let l = select(reader.receiver.distance, met, is_met).min(light.far);
     let mut depth = l * reader.depth.x - reader.depth.y;
     if reader.kind != DPSM_TAP_HARD {
-        let there = DpsmReceiver { distance: l, ..reader.receiver };
-        depth = depth - dpsm_bias_footprint(there, uv, T::lit(1.0), light);
+        if is_met {
+            let there = DpsmReceiver { distance: l, ..reader.receiver };
+            depth = depth - dpsm_bias_footprint(there, uv, T::lit(1.0), light);
+        } else {
+            // within the window the plane is no nearer than its height over the chord
+            let chord = dpsm_bias_window(uv, T::lit(1.0), light).sqrt();
+            let plane = reader.receiver.plane.w / chord.max(T::lit(DPSM_SMALLEST));
+            depth = depth.min(plane * reader.depth.x - reader.depth.y);
+        }
     }
     let inside = depth.clamp(T::lit(0.0), T::lit(1.0));
     DpsmLookup {

@@ -4,6 +4,7 @@
 mod adapter;
 #[path = "../common/mod.rs"]
 mod common;
+mod horizon;
 mod seam;
 mod soft;
 mod support;
