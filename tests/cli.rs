@@ -184,7 +184,7 @@ fn bad_settings_are_refused() {
     let soft = ["--filter", "disk", "--light-size", "0.1"];
     refused("filter-soft", &with(&soft), &["--filter disk takes no --light-size or --nearest"]);
     let radius = ["--filter", "mirror", "--kernel-radius=-1"];
-    refused("filter-radius", &with(&radius), &["size of -1", "0 to 1024"]);
+    refused("filter-radius", &with(&radius), &["--kernel-radius) of -1", "0 to 1024"]);
     let cube = ["--filter", "pcss", "--method", "cube"];
     refused("filter-cube", &with(&cube), &["paraboloid maps", "--filter hard", "another --method"]);
     let vertex = ["--filter", "disk", "--lookup", "vertex"];

@@ -2,7 +2,7 @@
 
 use dpsm::gpu::{Device, GpuError, make_maps};
 use dpsm::measure::{Bench, ShadowError, shadow_error, truth_of};
-use dpsm::render::{Bias, Format, Method, Settings};
+use dpsm::render::{Bias, Filter, Format, Kernel, Method, Settings, Taps};
 use fastrand::Rng;
 
 use super::place::{Place, posed, position, rotation};
@@ -33,11 +33,14 @@ pub fn faults(device: &Device) -> Result<(), GpuError> {
         "| scene | method | bias | points | edge points | faults: shadow, light | misclassified |"
     );
     println!("|---|---|---|---|---|---|---|");
+    let single = Filter::Single;
+    let tap = Filter::Disk(Taps { count: 1, kernel: Kernel::Tangent(0.0) });
     let biases = [
-        ("texel-centre", Bias::TexelCentre),
-        ("texel-centre-or-own", Bias::TexelCentreOrOwn),
-        ("footprint", Bias::Footprint),
-        ("constant", Bias::Constant(None)),
+        ("texel-centre", Bias::TexelCentre, single),
+        ("texel-centre-or-own", Bias::TexelCentreOrOwn, single),
+        ("footprint", Bias::Footprint, single),
+        ("constant", Bias::Constant(None), single),
+        ("one tap of the disk", Bias::TexelCentre, tap),
     ];
     let methods = [("exact", Method::Exact), ("hybrid", Method::Hybrid)];
     for place in &places() {
@@ -52,8 +55,9 @@ pub fn faults(device: &Device) -> Result<(), GpuError> {
                 let settings = Settings { method, size, format, ..base.settings.clone() };
                 let mut frame = posed(place, settings, light, turn);
                 let maps = make_maps(device, &frame)?;
-                for (b, (_, bias)) in biases.into_iter().enumerate() {
+                for (b, (_, bias, filter)) in biases.into_iter().enumerate() {
                     frame.settings.bias = bias;
+                    frame.settings.filter = filter;
                     let bench = Bench::new(&frame, &maps, &truth);
                     let points = bench.points_scattered(POINTS, pose as u64);
                     let error = shadow_error(&bench, &points, || ());
@@ -70,7 +74,7 @@ pub fn faults(device: &Device) -> Result<(), GpuError> {
                 }
             }
         }
-        let names = methods.iter().flat_map(|(m, _)| biases.map(|(b, _)| (*m, b)));
+        let names = methods.iter().flat_map(|(m, _)| biases.map(|(b, ..)| (*m, b)));
         for ((method, bias), s) in names.zip(sums) {
             println!(
                 "| {} | {method} | {bias} | {} | {} | {}, {} | {} |",

@@ -53,7 +53,9 @@ pub fn write(device: &Device) -> Result<(), Failure> {
          `cargo bench --bench filters -- page` writes this page. The same shadow by four filters: \
          maps of {SIZE}, a cone of {HALF_ANGLE_DEGREES} degrees half-angle, the seam through the \
          shadow. Error: RMSE of the visibility against ray casting of the cone, over the penumbra \
-         points among {POINTS} of the picture; the seam's are those within five texels of it. \
+         points among {POINTS} of the picture; the seam's are those within five texels of it. The \
+         naive filter is held against a cone as wide as its texels, takes the footprint bias of \
+         its whole window, and has the guard band of 2 x 2 texels, as it comes from no kernel's. \
          Cost: the camera pass, by tap, as a share of the naive filter's; {}.\n",
         device.describe()
     );

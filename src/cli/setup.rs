@@ -81,7 +81,8 @@ pub struct SetupArguments {
     /// For filters with a kernel: each tap 2 x 2 texels
     #[arg(long)]
     linear_taps: bool,
-    /// What keeps surfaces from shadowing themselves
+    /// What keeps surfaces from shadowing themselves in single lookups (hard, hardware) and, if
+    /// constant, in pcf; filters with a kernel compare planes
     #[arg(long, value_enum, default_value = "texel-centre")]
     bias: BiasName,
     /// For constant: the bias in units of depth; by default what 45 degrees incidence needs

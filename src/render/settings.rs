@@ -170,18 +170,24 @@ impl Filter {
             Self::Single => return None,
             Self::Naive(side) => (side, vec![]),
             Self::Disk(taps) | Self::Mirror(taps) | Self::Reproject(taps) => match taps.kernel {
-                Kernel::Tangent(size) | Kernel::Radius(size) => (taps.count, vec![size]),
+                Kernel::Tangent(size) => {
+                    (taps.count, vec![("kernel of tangent (--kernel-angle)", size)])
+                }
+                Kernel::Radius(size) => {
+                    (taps.count, vec![("kernel radius (--kernel-radius)", size)])
+                }
             },
             Self::Soft { taps, radius, nearest } => {
-                (taps, [radius, nearest].into_iter().flatten().collect())
+                let radius = radius.map(|size| ("light radius (--light-size)", size));
+                let nearest = nearest.map(|size| ("nearest distance (--nearest)", size));
+                (taps, radius.into_iter().chain(nearest).collect())
             }
         };
         if !(1..=MOST_TAPS).contains(&count) {
             return Some(format!("{count} taps: there may be 1 to {MOST_TAPS}"));
         }
-        let bad = |size: &&f32| !(0.0..=WIDEST).contains(*size);
-        let bad = sizes.iter().find(bad);
-        bad.map(|size| format!("a size of {size}: it may be 0 to {WIDEST}"))
+        let bad = sizes.into_iter().find(|(_, size)| !(0.0..=WIDEST).contains(size));
+        bad.map(|(name, size)| format!("a {name} of {size}: it may be 0 to {WIDEST}"))
     }
 }
 
