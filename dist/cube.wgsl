@@ -269,8 +269,8 @@ fn dpsm_cube_lookup_along_centre(
 /// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
 /// slack. Along a face's axis a plane is at h / (n . (x, y, 1)), so it is nearest in a corner.
 ///
-/// Domain: as dpsm_cube_lookup_along_centre, texels >= 0. A lit plane is never shadowed by itself at
-/// any texel of the window.
+/// Domain: as dpsm_cube_lookup_along_centre, texels >= 0. A lit plane is never shadowed by itself
+/// at any texel of the window.
 fn dpsm_cube_lookup_footprint(
     p: vec3<f32>,
     receiver: DpsmReceiver,
@@ -280,7 +280,8 @@ fn dpsm_cube_lookup_footprint(
 ) -> DpsmLookup {
     let normal = abs(dpsm_cube_view(receiver.plane.xyz, dpsm_cube_face(p)).xy);
     let side = texels * dpsm_texel_width(light.size, light.guard);
-    return dpsm_cube_lookup_rising(p, receiver.plane.w, side * (normal.x + normal.y), light, quantum);
+    let rise = side * (normal.x + normal.y);
+    return dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum);
 }
 
 /// The same without a normal, for incidences whose cosine is at least the given one.

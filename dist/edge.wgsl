@@ -167,8 +167,9 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
 
 /// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
 /// between it and its chord, at most tau texels, behind the seam 4 tau, so that no hole is left
-/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one direction, as their
-/// triangle covers nothing. An arc that is not moved is exactly negated when turned.
+/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one
+/// direction, as their triangle covers nothing. An arc that is not moved is exactly negated when
+/// turned.
 ///
 /// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
 /// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are

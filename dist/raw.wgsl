@@ -354,12 +354,12 @@ fn dpsm_kernel(p: vec3<f32>, tangent: f32) -> DpsmKernel {
 }
 
 /// A tap of a kernel: the offset in the unit disk scaled to the pole's cone, turned to the axis,
-/// and continued in the other hemisphere where that lies beyond the rim. Turning is conformal, so the
-/// taps fill the cone's disk, and as evenly around the axis as the offsets do around 0.
+/// and continued in the other hemisphere where that lies beyond the rim. Turning is conformal, so
+/// the taps fill the cone's disk, and as evenly around the axis as the offsets do around 0.
 ///
 /// With w = reach offset and complex numbers: (axis + w) / (1 - axis* w), or one over its
-/// conjugate, by one division. Domain: |offset| <= 1, kernel as dpsm_kernel gives it. Bound: 32 eps absolute
-/// for the kernel given.
+/// conjugate, by one division. Domain: |offset| <= 1, kernel as dpsm_kernel gives it. Bound: 32 eps
+/// absolute for the kernel given.
 fn dpsm_kernel_tap(kernel: DpsmKernel, offset: vec2<f32>) -> DpsmTap {
     let w = offset * kernel.reach;
     let above = kernel.axis + w;

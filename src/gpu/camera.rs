@@ -106,6 +106,7 @@ impl<'a> Camera<'a> {
             concat!(
                 include_str!("camera.wesl"),
                 include_str!("shadow.wesl"),
+                include_str!("position.wesl"),
                 include_str!("mask.wesl")
             ),
         )?;

@@ -111,12 +111,20 @@ impl Sorter {
         let (path, text, entries): (_, _, &[&str]) = match by {
             By::Class => (
                 "classify.wesl",
-                concat!(include_str!("classify.wesl"), include_str!("pass.wesl")),
+                concat!(
+                    include_str!("classify.wesl"),
+                    include_str!("pass.wesl"),
+                    include_str!("position.wesl")
+                ),
                 &["classify", "count", "prepare", "finish"],
             ),
             By::Face => (
                 "faces.wesl",
-                concat!(include_str!("faces.wesl"), include_str!("pass.wesl")),
+                concat!(
+                    include_str!("faces.wesl"),
+                    include_str!("pass.wesl"),
+                    include_str!("position.wesl")
+                ),
                 &["sort_faces", "finish_faces"],
             ),
         };

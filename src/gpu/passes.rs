@@ -86,8 +86,12 @@ pub fn pipelines(
     format: Format,
     views: u32,
 ) -> Result<Vec<wgpu::RenderPipeline>, GpuError> {
-    let text =
-        concat!(include_str!("caster.wesl"), include_str!("pass.wesl"), include_str!("mask.wesl"));
+    let text = concat!(
+        include_str!("caster.wesl"),
+        include_str!("pass.wesl"),
+        include_str!("position.wesl"),
+        include_str!("mask.wesl")
+    );
     let module = match views {
         1 => shader(device, "caster.wesl", text)?,
         _ => shader(device, "caster.wesl for multiview", &multiview_text(text))?,

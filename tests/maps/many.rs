@@ -29,7 +29,7 @@ fn with(change: impl Fn(wgpu::Limits) -> wgpu::Limits) -> Device {
 #[test]
 fn many_chunks_make_the_maps_of_one() {
     let Some(device) = device() else { return };
-    // lists of 10,000 triangles at once, of 40,000
+    // room for a part of the 40,000 at once
     let limited = limited((10_000 + (1 << 14)) * 224);
     let scene = scene::crowd(40_000);
     let position = scene.default_light().position;
