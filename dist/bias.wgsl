@@ -121,9 +121,9 @@ const DPSM_SMALLEST: f32 = 0x1p-51;
 /// For z >= 0 this is r <= 1; for z < 0, r > 1, which is computed in the point's own hemisphere
 /// and carried across the seam, so that nothing cancels. For the back map flip the point first.
 /// Domain: largest |component| in [2^-51, 2^63]. Bound: 9.5 eps relative for z >= 0, 19 eps for
-/// z < 0, results below 2^-103 counted as 2^-103. Directions within 2^-24 rad of the -z pole give
-/// (DPSM_POLE_RADIUS, 0); the light's own position gives (0, 0); smaller points give a finite
-/// result.
+/// z < 0, own-hemisphere coordinates below 2^-103 counted as 2^-103. Directions within 2^-24 rad
+/// of the -z pole give (DPSM_POLE_RADIUS, 0); the light's own position gives (0, 0); smaller points
+/// give a finite result.
 fn dpsm_project(p: vec3<f32>) -> vec2<f32> {
     let own = dpsm_project_own(p);
     if p.z >= 0.0 {
@@ -315,7 +315,7 @@ fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32
 /// square window around it, at most 2: a window of more than 90 degrees counts as one.
 ///
 /// texels: half the window's side, k + 1/2 for a kernel of k texels' radius on nearest texels.
-/// Domain: texels >= 0, r <= 2^30. Bound: 20 eps relative, rounded either way.
+/// Domain: texels >= 0, r <= 2^30. Bound: (19 + 12 r) eps relative, rounded either way.
 fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let r = length(uv);

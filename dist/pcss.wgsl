@@ -206,7 +206,7 @@ fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32
 /// square window around it, at most 2: a window of more than 90 degrees counts as one.
 ///
 /// texels: half the window's side, k + 1/2 for a kernel of k texels' radius on nearest texels.
-/// Domain: texels >= 0, r <= 2^30. Bound: 20 eps relative, rounded either way.
+/// Domain: texels >= 0, r <= 2^30. Bound: (19 + 12 r) eps relative, rounded either way.
 fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let r = length(uv);

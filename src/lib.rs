@@ -13,6 +13,11 @@
 
 #![warn(missing_docs)]
 
+// sources that tests share name the crate
+extern crate self as dpsm;
+
+#[cfg(feature = "gpu")]
+pub mod accuracy;
 pub mod cases;
 #[cfg(feature = "scene")]
 pub mod cpu;

@@ -4,43 +4,27 @@
 #![cfg(feature = "gpu")]
 
 mod common;
-#[path = "adapter/records.rs"]
-mod records;
 
 use common::{device, rng, unit};
 use dpsm::gpu::{Device, Evaluator, GpuError, Resources, Texels, comparison_sampler};
-use dpsm::reflect::Kind;
 use dpsm::render::Format;
 use dpsm::scalar::bias::*;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::light::{DPSM_LAYERS, DpsmLight};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scalar::paraboloid::dpsm_project_own;
-use dpsm::scalar::ports::{self, Flat, PORTS, Word};
+use dpsm::scalar::ports::{Flat, PORTS, Word};
 use dpsm::scalar::visibility::*;
-use dpsm::ulp::ulps_apart;
 use fastrand::Rng;
-use records::record;
 
 /// Inputs of each function.
 const INPUTS: usize = 1 << 20;
-
-/// A driver that neither fuses, flushes nor reorders.
-fn rounds_to_nearest(device: &Device) -> bool {
-    device.info.name.contains("llvmpipe")
-}
 
 fn bits(word: Word<f32>) -> u32 {
     match word {
         Word::Float(value) => value.to_bits(),
         Word::Integer(value) => value,
     }
-}
-
-/// The same float: equal bits, or both NaN.
-fn same(kind: Kind, a: u32, b: u32) -> bool {
-    let nan = |bits| f32::from_bits(bits).is_nan();
-    a == b || (kind == Kind::Float && nan(a) && nan(b))
 }
 
 #[test]
@@ -69,43 +53,6 @@ fn ports_and_modules_declare_the_same_functions_in_the_same_order() {
         let plain = declared.iter().filter(|name| !samples(name));
         assert_eq!(plain.collect::<Vec<_>>(), listed, "{}", module.name);
     }
-}
-
-#[test]
-fn every_function_agrees_with_its_port() {
-    let Some(device) = device() else { return };
-    let exact = rounds_to_nearest(&device);
-    let mut failures = Vec::new();
-    println!("{:<26}{:>9}{:>11}{:>16}", "function", "inputs", "different", "floats apart");
-    for (_, function) in PORTS {
-        let evaluator = Evaluator::new(&device, function).unwrap();
-        let signature = &evaluator.signature;
-        let (inputs, outputs) = (signature.inputs(), signature.outputs());
-        let mut rng = rng(function);
-        let records: Vec<_> = (0..INPUTS).map(|_| record(signature, &mut rng)).collect();
-        let words: Vec<u32> = records.iter().flatten().map(|&word| bits(word)).collect();
-        assert_eq!(words.len(), INPUTS * inputs.len());
-        let answers = evaluator.run(&words, None).unwrap().words;
-        assert_eq!(answers.len(), INPUTS * outputs.len());
-        let (mut different, mut apart, mut first) = (0, 0, None);
-        for (record, answer) in records.iter().zip(answers.chunks(outputs.len())) {
-            let port = ports::call(function, record).unwrap();
-            let mut differs = false;
-            for ((component, &answer), port) in outputs.iter().zip(answer).zip(port) {
-                if !same(component.kind, answer, bits(port)) {
-                    differs = true;
-                    if let Word::Float(port) = port {
-                        apart = apart.max(ulps_apart(f32::from_bits(answer), port));
-                    }
-                    first.get_or_insert_with(|| format!("{record:?} gives {answer:08x}, {port:?}"));
-                }
-            }
-            different += usize::from(differs);
-        }
-        println!("{function:<26}{INPUTS:>9}{different:>11}{apart:>16}");
-        failures.extend(first.map(|first| format!("{function}: {first}")));
-    }
-    assert!(!exact || failures.is_empty(), "{}", failures.join("\n"));
 }
 
 #[test]

@@ -254,7 +254,7 @@ fn rotations_of_pixels_are_unit_vectors_spread_evenly() {
     let mut worst = Worst::default();
     for pixel in (0..256).flat_map(|y| (0..256).map(move |x| [x, y])) {
         let turned: Vec2<f32> = dpsm_kernel_rotation(pixel);
-        worst.note((turned.widen().length() - 1.0).abs(), 70.0 * EPS, pixel);
+        worst.note((turned.widen().length() - 1.0).abs(), 152.0 * EPS, pixel);
         let azimuth = f64::from(turned.y).atan2(turned.x.into()).rem_euclid(TAU);
         sectors[((azimuth / TAU * 16.0) as usize).min(15)] += 1;
     }

@@ -365,7 +365,7 @@ MUTATIONS = [
      "map_error", "worst_texel_is_the_one_of_the_rest_with_the_largest_error"),
     # the modules and the host, on an adapter
     ("wgsl/paraboloid.wesl", "return dpsm_invert(own);", "return p.xy / (length(p) + p.z);",
-     "adapter", "every_function_agrees_with_its_port"),
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports"),
     ("wgsl/caster.wesl", "fn dpsm_caster_border", "fn dpsm_caster_edge",
      "adapter", "ports_and_modules_declare_the_same_functions_in_the_same_order"),
     ("wgsl/visibility.wesl", "at.depth - bias);", "at.depth + bias);",
@@ -374,7 +374,7 @@ MUTATIONS = [
      "case 3u: { return vec3<f32>(-p.x, p.z, -p.y); }",
      "cube", "adapter::adapter_agrees_with_the_port_and_a_texture_cube_samples_alike"),
     ("wgsl/tessellate.wesl", "    if w.y < w.z {", "    if w.y <= w.z {",
-     "adapter", "every_function_agrees_with_its_port"),
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports"),
     ("src/gpu/evaluate.rs", "*word += 1;", "*word += 1; if *word == 8 { *word = 7; }",
      "adapter", "values_far_apart_in_one_struct_keep_their_places"),
     ("src/gpu/texels.wesl", "row % size.y", "size.y - 1u - row % size.y",
@@ -714,7 +714,7 @@ MUTATIONS = [
 def caught(test_file, test):
     """True when the test runs and fails; a mistake that does not compile proves nothing."""
     features = {
-        "adapter": [], "maps": [], "cube": [], "render": [], "light": [],
+        "accuracy": [], "adapter": [], "maps": [], "cube": [], "render": [], "light": [],
         "measure": ["--no-default-features", "--features", "scene"],
         "frame": ["--no-default-features", "--features", "scene"],
         "scene": ["--no-default-features", "--features", "scene"],

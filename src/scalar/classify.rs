@@ -54,7 +54,7 @@ pub const DPSM_CLASSIFY_CENTRES: f64 = 4.0;
 
 /// True where every component is a number up to 2^62.
 pub fn dpsm_classify_usable<T: Float>(p: Vec3<T>) -> bool {
-    [p.x, p.y, p.z].iter().all(|c| c.value().abs() <= DPSM_CLASSIFY_LARGEST)
+    [p.x, p.y, p.z].iter().all(|c| c.abs() <= T::lit(DPSM_CLASSIFY_LARGEST))
 }
 
 /// The class of a triangle of light-space vertices, not flipped.

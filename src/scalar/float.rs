@@ -3,7 +3,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number type that a port can run on: f32 mirrors the shader, f64 is the reference.
+/// A number type that a port can run on: f32 mirrors the shader, f64 is the reference, an interval
+/// ([`super::interval::Interval`]) holds what any adapter may answer.
 ///
 /// Only IEEE operations, so results are the same on every machine.
 pub trait Float:
@@ -32,6 +33,15 @@ pub trait Float:
     fn floor(self) -> Self;
     /// The smallest whole number that is not below.
     fn ceil(self) -> Self;
+    /// The whole number that is left without the fraction; 0 below 0.
+    fn to_integer(self) -> u32 {
+        self.value() as u32
+    }
+    /// The sum of a dot product's terms, from left to right.
+    fn sum<const N: usize>(terms: [Self; N]) -> Self {
+        let [first, rest @ ..] = &terms[..] else { return Self::lit(0.0) };
+        rest.iter().fold(*first, |sum, &term| sum + term)
+    }
     /// WGSL's clamp.
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
@@ -116,8 +126,7 @@ macro_rules! vector {
 
             /// WGSL's dot product, summed from left to right.
             pub fn dot(self, other: Self) -> T {
-                let products = [$(self.$c * other.$c),+];
-                products[1..].iter().fold(products[0], |sum, &product| sum + product)
+                T::sum([$(self.$c * other.$c),+])
             }
 
             /// WGSL's length: the root of the dot product with itself.

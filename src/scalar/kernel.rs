@@ -50,7 +50,7 @@ pub fn dpsm_kernel_disk<T: Float>(p: Vec3<T>, tangent: T) -> Vec3<T> {
     let k = (T::lit(1.0) + tangent * tangent).sqrt();
     let l = p.length();
     let below = (k * p.z.abs() + l).max(T::lit(DPSM_SMALLEST));
-    Vec3::new(p.x * k, p.y * k, tangent * l) / below
+    Vec3::new(p.x, p.y, l) / below * Vec3::new(k, k, tangent)
 }
 
 /// A tap of a kernel, continued in the other hemisphere where it lies beyond the rim.

@@ -10,6 +10,7 @@
 //! ```
 
 pub mod bias;
+pub mod bounds;
 pub mod caster;
 pub mod classify;
 pub mod cube;
@@ -18,6 +19,7 @@ pub mod edge;
 pub mod filter;
 pub mod float;
 pub mod hemisphere;
+pub mod interval;
 pub mod kernel;
 pub mod light;
 pub mod lights;

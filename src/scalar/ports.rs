@@ -9,6 +9,7 @@ use super::edge::*;
 use super::filter::*;
 use super::float::{Float, Vec2, Vec3, Vec4};
 use super::hemisphere::*;
+use super::interval::Interval;
 use super::kernel::*;
 use super::light::*;
 use super::lights::*;
@@ -53,6 +54,7 @@ macro_rules! float {
 }
 float!(f32);
 float!(f64);
+float!(Interval);
 
 impl<T> Flat<T> for u32 {
     fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
@@ -164,7 +166,17 @@ tuple!(a: A, b: B, c: C, d: D, e: E, f: G);
 
 /// A function of flat arguments.
 trait Callable<T, Arguments> {
-    fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>>;
+    fn apply(&self, words: &[Word<T>], out: &mut Vec<Word<T>>) -> Option<()>;
+}
+
+/// A port on flat words: appends its result's words; `None` for words that do not fit.
+pub type Port<T> = fn(&[Word<T>], &mut Vec<Word<T>>) -> Option<()>;
+
+/// Calls a port on flat words; `None` for an unknown name or words that do not fit.
+pub fn call<T: Float + Flat<T>>(function: &str, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
+    let mut out = Vec::new();
+    find(function)?(words, &mut out)?;
+    Some(out)
 }
 
 macro_rules! callable {
@@ -173,15 +185,14 @@ macro_rules! callable {
         where
             F: Fn($($t),+) -> R,
         {
-            fn apply(&self, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
+            fn apply(&self, words: &[Word<T>], out: &mut Vec<Word<T>>) -> Option<()> {
                 let mut words = words.iter().copied();
                 let ($($part,)+) = Flat::read(&mut words)?;
                 if words.next().is_some() {
                     return None;
                 }
-                let mut out = Vec::new();
-                self($($part),+).write(&mut out);
-                Some(out)
+                self($($part),+).write(out);
+                Some(())
             }
         }
     };
@@ -208,10 +219,12 @@ macro_rules! ports {
         /// The functions that have a port here: module and name, in the modules' order.
         pub const PORTS: &[(&str, &str)] = &[$($((stringify!($module), stringify!($function)),)+)+];
 
-        /// Calls a port on flat words; `None` for an unknown name or words that do not fit.
-        pub fn call<T: Float + Flat<T>>(function: &str, words: &[Word<T>]) -> Option<Vec<Word<T>>> {
+        /// The port of that name on flat words.
+        pub fn find<T: Float + Flat<T>>(function: &str) -> Option<Port<T>> {
             match function {
-                $($( stringify!($function) => port!($function $($integers)?).apply(words), )+)+
+                $($( stringify!($function) => {
+                    Some(|words, out| port!($function $($integers)?).apply(words, out))
+                } )+)+
                 _ => None,
             }
         }

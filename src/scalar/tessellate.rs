@@ -64,5 +64,5 @@ pub fn dpsm_tessellate_level<T: Float>(
     let sine_square = allowed * (T::lit(2.0) - square * allowed);
     let half = T::lit(0.5) * longest_edge / distance.max(T::lit(DPSM_SMALLEST));
     let cuts = half * (one / sine_square - one).sqrt();
-    cuts.value().ceil().min(f64::from(most)).max(1.0) as u32
+    T::lit(1.0).max(cuts.ceil().min(T::lit(f64::from(most)))).to_integer()
 }

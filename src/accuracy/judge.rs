@@ -1,0 +1,207 @@
+//! Is an answer one that the specification allows, and how close to the bound is it?
+
+use crate::reflect::Signature;
+use crate::scalar::bounds::{Bound, Error, number};
+use crate::scalar::float::Float;
+use crate::scalar::interval::{Interval, answers};
+use crate::scalar::ports::{self, Port, Word};
+
+/// What an answer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within the bound of the exact result.
+    Within,
+    /// Within the bound of what another decision gives, where WGSL leaves the decision open.
+    Decision,
+    /// WGSL promises nothing here: a division whose divisor may be 0, an overflow.
+    Open,
+    /// Outside.
+    Broken,
+}
+
+/// A judged answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Judged {
+    /// What it is.
+    pub verdict: Verdict,
+    /// Error and bound in eps; where the interval is the bound, the shares of its half-width.
+    pub error: Error,
+    /// True where every float is the exact result's nearest one.
+    pub rounded: bool,
+}
+
+/// Judges one function's answers.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    /// The bound.
+    pub bound: &'static Bound,
+    /// The function's signature.
+    pub signature: Signature,
+    /// The port that answers as a driver does that rounds to nearest.
+    pub port: Port<f32>,
+    exact: Port<f64>,
+    interval: Port<Interval>,
+}
+
+impl Judge {
+    /// The judge of a function; `None` for one without a port.
+    pub fn of(function: &str) -> Option<Self> {
+        let validated = crate::validate(&crate::link::link_function(function).ok()?).ok()?;
+        Some(Self {
+            bound: Bound::of(function)?,
+            signature: Signature::of(&validated.module, function).ok()?,
+            port: ports::find(function)?,
+            exact: ports::find(function)?,
+            interval: ports::find(function)?,
+        })
+    }
+
+    /// True where a record lies in the function's domain. Subnormal numbers never do: they may
+    /// count as 0.
+    pub fn inside(&self, record: &[Word<f32>]) -> bool {
+        self.input(record).is_some()
+    }
+
+    /// A record of the domain as numbers.
+    fn input(&self, record: &[Word<f32>]) -> Option<Vec<f64>> {
+        let usable = |word: &Word<f32>| match word {
+            Word::Float(x) => *x == 0.0 || x.is_normal(),
+            Word::Integer(_) => true,
+        };
+        let input = record.iter().all(usable).then(|| numbers(record))?;
+        (self.bound.inside)(&input).then_some(input)
+    }
+
+    /// Judges an answer; `None` for a record outside the domain.
+    pub fn judge(&self, record: &[Word<f32>], answer: &[Word<f32>]) -> Option<Judged> {
+        let input = self.input(record)?;
+        let actual = numbers(answer);
+        let wide: Vec<_> = record.iter().map(|word| map(*word, f64::from)).collect();
+        let mut exact = Vec::with_capacity(answer.len());
+        if (self.exact)(&wide, &mut exact).is_some() && same_integers(answer, &exact) {
+            let exact = numbers(&exact);
+            if let Some(error) = self.bound.error(&input, &exact, &actual)
+                && error.share() <= 1.0
+            {
+                let rounded = rounded(&actual, &exact);
+                return Some(Judged { verdict: Verdict::Within, error, rounded });
+            }
+        }
+        Some(self.judge_by_interval(&input, record, answer))
+    }
+
+    /// Judges an answer by the interval of the port, and by the bound for each way to decide.
+    fn judge_by_interval(
+        &self,
+        input: &[f64],
+        record: &[Word<f32>],
+        answer: &[Word<f32>],
+    ) -> Judged {
+        let actual = numbers(answer);
+        let words: Vec<_> = record.iter().map(|word| map(*word, Interval::exact)).collect();
+        let mut way = 0;
+        let mut judged =
+            Judged { verdict: Verdict::Broken, error: Error::default(), rounded: false };
+        let port = || {
+            let mut out = Vec::new();
+            (self.interval)(&words, &mut out).map(|()| out)
+        };
+        let found = answers(port, |result| {
+            way += 1;
+            let Some(result) = result else { return false };
+            if !same_integers(answer, &result) || !holds(&result, answer) {
+                return false;
+            }
+            let exact = numbers(&result);
+            let open = |word: &Word<Interval>| matches!(word, Word::Float(x) if x.is_anything());
+            if result.iter().any(open) {
+                judged.verdict = Verdict::Open;
+                return true;
+            }
+            let error = self.bound.error(input, &exact, &actual);
+            judged.error = error.unwrap_or_else(|| off_middle(&result, &actual));
+            judged.rounded = rounded(&actual, &exact);
+            let fits = judged.error.share() <= 1.0;
+            if fits {
+                judged.verdict = if way == 1 { Verdict::Within } else { Verdict::Decision };
+            }
+            fits
+        });
+        if found.is_none() {
+            judged.verdict = Verdict::Open; // more ways to decide than were tried
+        }
+        judged
+    }
+
+    /// The largest share of the closed bound that the interval takes, the exact decision assumed;
+    /// `None` without a closed bound, or where the interval holds everything.
+    pub fn allowed(&self, record: &[Word<f32>]) -> Option<Error> {
+        let input = self.input(record)?;
+        let words: Vec<_> = record.iter().map(|word| map(*word, Interval::exact)).collect();
+        let mut worst = None;
+        let port = || {
+            let mut out = Vec::new();
+            (self.interval)(&words, &mut out).map(|()| out)
+        };
+        answers(port, |result| {
+            let Some(result) = result else { return true };
+            let end = |pick: fn(Interval) -> f64| -> Vec<f64> {
+                result
+                    .iter()
+                    .map(|word| match word {
+                        Word::Float(x) => pick(*x),
+                        Word::Integer(x) => f64::from(*x),
+                    })
+                    .collect()
+            };
+            let exact = end(|x| x.value);
+            let ends = [end(|x| x.low), end(|x| x.high)];
+            if ends.iter().flatten().all(|x| x.is_finite()) {
+                let errors = ends.map(|end| self.bound.error(&input, &exact, &end));
+                worst = errors.into_iter().flatten().max_by(|a, b| a.share().total_cmp(&b.share()));
+            }
+            true
+        });
+        worst
+    }
+}
+
+fn numbers<T: Float>(words: &[Word<T>]) -> Vec<f64> {
+    words.iter().map(|word| number(*word)).collect()
+}
+
+/// True where every float is the nearest one.
+fn rounded(actual: &[f64], exact: &[f64]) -> bool {
+    actual.iter().zip(exact).all(|(a, b)| *a == f64::from(*b as f32))
+}
+
+fn map<T>(word: Word<f32>, float: impl Fn(f32) -> T) -> Word<T> {
+    match word {
+        Word::Float(value) => Word::Float(float(value)),
+        Word::Integer(value) => Word::Integer(value),
+    }
+}
+
+fn same_integers<T>(answer: &[Word<f32>], exact: &[Word<T>]) -> bool {
+    answer.iter().zip(exact).all(|pair| match pair {
+        (Word::Integer(a), Word::Integer(b)) => a == b,
+        _ => true,
+    })
+}
+
+fn holds(result: &[Word<Interval>], answer: &[Word<f32>]) -> bool {
+    result.iter().zip(answer).all(|pair| match pair {
+        (Word::Float(interval), Word::Float(value)) => interval.holds(*value),
+        _ => true,
+    })
+}
+
+/// How far from the exact value, as a share of the way to the interval's end.
+fn off_middle(result: &[Word<Interval>], actual: &[f64]) -> Error {
+    let share = result.iter().zip(actual).map(|(word, &a)| match word {
+        Word::Float(x) if a > x.value => (a - x.value) / (x.high - x.value),
+        Word::Float(x) if a < x.value => (x.value - a) / (x.value - x.low),
+        _ => 0.0,
+    });
+    Error { eps: share.fold(0.0, f64::max), bound: 1.0 }
+}
