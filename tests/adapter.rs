@@ -6,7 +6,7 @@
 mod common;
 
 use common::{device, rng, unit};
-use dpsm::gpu::{Device, Evaluator, GpuError, Resources, Texels, comparison_sampler};
+use dpsm::gpu::{Evaluator, GpuError, Resources, Texels, comparison_sampler};
 use dpsm::render::Format;
 use dpsm::scalar::bias::*;
 use dpsm::scalar::float::{Vec2, Vec3};
