@@ -163,7 +163,8 @@ fn dpsm_edge_ordered(a: vec3<f32>, b: vec3<f32>) -> bool {
 }
 
 /// Unit normal of the plane through the light and both points, along a x b; exactly negated for
-/// (b, a). Zero where the points and the light are on one line.
+/// (b, a). Zero where the points and the light are on one line, also for points so near that the
+/// nearer one's |p|^2 times the sine of the angle between them is below 2^-100.
 ///
 /// Domain: |a|, |b| in [2^-50, 2^62]. Bound: rounding moves the arc between the points by at most
 /// (4.5 / cos(phi / 2) + 5) eps rad, phi the angle between them: 23 eps up to 150 degrees.
@@ -311,6 +312,12 @@ const DPSM_CLASSIFY_RIM: f32 = 0.9999;
 /// Texel centres a side up to which a triangle's are tried one by one.
 const DPSM_CLASSIFY_CENTRES: f32 = 4.0;
 
+/// Smallest facing of a plane that is told from edge-on.
+const DPSM_CLASSIFY_FACING: f32 = 0x1p-60;
+
+/// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
+const DPSM_CLASSIFY_SPREAD: f32 = 0x1p40;
+
 /// True where every component is a number up to 2^62. By its bits, since NaN may be assumed away.
 ///
 /// Exact.
@@ -389,8 +396,9 @@ fn dpsm_classify(
 /// farthest point is than the nearest.
 ///
 /// hull: the points; distances: the plane's at each; plane: (unit normal, height).
-/// Domain: chords up to DPSM_TRIANGLE_CHORD. An upper bound for errors up to 1/10
-/// (docs/classify.md); infinite or NaN where the plane is seen edge-on.
+/// Domain: chords up to DPSM_TRIANGLE_CHORD, distances 0 or in [2^-50, 2^63], none below the
+/// height. An upper bound for errors up to 1/10 (docs/classify.md); large, but finite, where the
+/// plane is seen edge-on.
 fn dpsm_classify_flat_error(hull: DpsmHull, distances: vec3<f32>, plane: vec4<f32>) -> f32 {
     let ab = dpsm_classify_distance(plane, 0.5 * (hull.a + hull.b));
     let bc = dpsm_classify_distance(plane, 0.5 * (hull.b + hull.c));
@@ -398,23 +406,27 @@ fn dpsm_classify_flat_error(hull: DpsmHull, distances: vec3<f32>, plane: vec4<f3
     let middles = 0.5 * (distances + distances.yzx);
     let errors = abs(middles - vec3<f32>(ab, bc, ca));
     let nearest = min(min(distances.x, distances.y), distances.z);
-    let spread = (max(max(distances.x, distances.y), distances.z) - nearest) / nearest;
+    let farther = max(max(distances.x, distances.y), distances.z) - nearest;
+    let unit = max(nearest, DPSM_SMALLEST);
+    let spread = min(farther / unit, DPSM_CLASSIFY_SPREAD);
     let sides = vec3<f32>(
         dot(hull.b - hull.a, hull.b - hull.a),
         dot(hull.c - hull.b, hull.c - hull.b),
         dot(hull.a - hull.c, hull.a - hull.c),
     );
     let unseen = 0.25 * spread * (max(max(sides.x, sides.y), sides.z) + spread * spread);
-    return 1.5 * max(max(errors.x, errors.y), errors.z) / nearest + unseen;
+    return 1.5 * max(max(errors.x, errors.y), errors.z) / unit + unseen;
 }
 
 /// The distance of a plane (unit normal, height) in the direction of uv, from either side; below 0
 /// where it is behind.
 ///
-/// Domain: r <= 4. Bound: relative 20 eps / cos, the cosine of the angle of incidence.
+/// Domain: r <= 4. Bound: relative 20 eps / cos, the cosine of the angle of incidence; finite also
+/// where that is 0.
 fn dpsm_classify_distance(plane: vec4<f32>, uv: vec2<f32>) -> f32 {
-    let terms = dpsm_edge_terms(uv);
-    return plane.w * (1.0 + dot(uv, uv)) / dot(plane.xyz, terms.xyz);
+    let facing = dot(plane.xyz, dpsm_edge_terms(uv).xyz);
+    let seen = select(facing, DPSM_CLASSIFY_FACING, abs(facing) < DPSM_CLASSIFY_FACING);
+    return plane.w * (1.0 + dot(uv, uv)) / seen;
 }
 
 /// True where a triangle of disk corners covers no texel centre, whether its edges are drawn as

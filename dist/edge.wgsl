@@ -113,7 +113,8 @@ fn dpsm_edge_ordered(a: vec3<f32>, b: vec3<f32>) -> bool {
 }
 
 /// Unit normal of the plane through the light and both points, along a x b; exactly negated for
-/// (b, a). Zero where the points and the light are on one line.
+/// (b, a). Zero where the points and the light are on one line, also for points so near that the
+/// nearer one's |p|^2 times the sine of the angle between them is below 2^-100.
 ///
 /// Domain: |a|, |b| in [2^-50, 2^62]. Bound: rounding moves the arc between the points by at most
 /// (4.5 / cos(phi / 2) + 5) eps rad, phi the angle between them: 23 eps up to 150 degrees.

@@ -166,7 +166,8 @@ fn dpsm_edge_ordered(a: vec3<f32>, b: vec3<f32>) -> bool {
 }
 
 /// Unit normal of the plane through the light and both points, along a x b; exactly negated for
-/// (b, a). Zero where the points and the light are on one line.
+/// (b, a). Zero where the points and the light are on one line, also for points so near that the
+/// nearer one's |p|^2 times the sine of the angle between them is below 2^-100.
 ///
 /// Domain: |a|, |b| in [2^-50, 2^62]. Bound: rounding moves the arc between the points by at most
 /// (4.5 / cos(phi / 2) + 5) eps rad, phi the angle between them: 23 eps up to 150 degrees.
@@ -330,7 +331,8 @@ fn dpsm_triangle(
     let second = select(b, c, turned);
     let third = select(c, b, turned);
     let farthest = max(max(length(a), length(b)), length(c));
-    let height = max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT);
+    // 2^-120: below every share within the domain; all vertices may be at the light
+    let height = max(max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT), 0x1p-120);
     let outward = select(plane.xyz, -plane.xyz, turned);
     return DpsmTriangle(
         dpsm_edge_line(a, second, light, tau),

@@ -1,121 +1,126 @@
 //! The cases of module bias, and of the biases of module cube.
 
-use super::{Cases, DISKS, GUARD, POINTS, disk, light, point};
+use super::domain::{Promise, all as any, normals, received, up_to};
+use super::values::*;
+use super::{Cases, disk, point};
 use crate::scalar::bias::{DpsmReceiver, dpsm_receiver};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_FRONT};
-use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS};
-
-/// Normals at the point (1, 2, 3).
-const NORMALS: &[(&str, [f32; 3])] = &[
-    ("facing", [1.0, 2.0, 3.0]),
-    ("turned away", [-3.0, -6.0, -9.0]),
-    ("oblique and long", [0.0, 1e20, 0.0]),
-    ("short", [1e-20, 0.0, 1e-20]),
-    ("edge-on", [3.0, 0.0, -1.0]),
-    ("nearly edge-on", [3.0, 0.0, -0.999]),
-    ("none", [0.0, 0.0, 0.0]),
-];
-
-/// Half sides of windows in texels.
-const WINDOWS: &[(&str, f32)] =
-    &[("nearest texel", 0.5), ("radius 3", 3.5), ("nothing", 0.0), ("whole map", 1024.0)];
+use crate::scalar::light::DpsmLight;
 
 /// The format's quantum and the method's tolerance in the cases.
 const SLACK: (f32, f32) = (1.0 / 65535.0, 9e-4);
 
 /// Adds the cases of one of these functions.
 pub fn add(function: &str, cases: &mut Cases) {
-    let layers = light(DPSM_LAYERS);
-    let ordinary = point([1.0, 2.0, 3.0]);
+    let ordinary = point(POINTS.rows[0].1);
     let of = |normal: [f32; 3]| -> DpsmReceiver<f32> { dpsm_receiver(ordinary, point(normal)) };
     let oblique = of([0.0, 1.0, 0.0]);
-    let cosines = [("facing", 1.0), ("oblique", 0.5), ("grazing", 0.001_745), ("edge-on", 0.0)];
+    let inside = disk(DISKS.rows[1].1);
+    // a point with a plane of one normal, and the point (1, 2, 3) with planes of each
+    let facing = |p| (point(p), dpsm_receiver(point(p), point([0.0, 0.6, -0.8])));
+    let normal_at = |normal| (ordinary, of(normal));
+    let upright = (ordinary, oblique);
     match function {
         "dpsm_receiver" => {
-            cases.each(NORMALS, |normal| (ordinary, point(normal)));
-            cases.each(POINTS, |p| (point(p), point([0.0, 0.6, -0.8])));
-            cases.each(&[("light's own position, no normal", [0.0; 3])], |p| (point(p), point(p)));
+            cases.each(&NORMALS, normals, |normal| (ordinary, point(normal)));
+            cases.each(&POINTS, received, |p| (point(p), point([0.0, 0.6, -0.8])));
+            cases.named(&POINTS, ", no normal", received, |p| (point(p), point([0.0; 3])));
         }
-        "dpsm_receiver_cosine" => cases.each(NORMALS, of),
+        "dpsm_receiver_cosine" => {
+            cases.each(&NORMALS, normals, of);
+            cases.each(&POINTS, received, |p| facing(p).1);
+        }
         "dpsm_receiver_distance" => {
-            for (name, uv) in DISKS {
-                let both = [format!("{name}, front"), format!("{name}, back")];
-                cases.each(&[(&both[0], DPSM_FRONT)], |map| (oblique, disk(*uv), map));
-                cases.each(&[(&both[1], DPSM_BACK)], |map| (oblique, disk(*uv), map));
-            }
-            cases.each(NORMALS, |normal| (of(normal), disk([0.25, 0.5]), DPSM_FRONT));
+            cases.named(
+                &DISKS,
+                ", front",
+                |uv| up_to(62, uv),
+                |uv| (oblique, disk(uv), DPSM_FRONT),
+            );
+            cases.named(&DISKS, ", back", |uv| up_to(62, uv), |uv| (oblique, disk(uv), DPSM_BACK));
+            cases.each(&NORMALS, normals, |normal| (of(normal), disk([0.25, 0.5]), DPSM_FRONT));
         }
         "dpsm_bias_slack" => {
-            let distances = [("near", 0.1), ("far", 10.0), ("none", 0.0)];
-            cases.each(&distances, |l| (l, layers, SLACK));
-            cases.each(&distances, |l| (l, layers, (0.0, 0.0)));
+            let domain = |l: [f32; 3]| up_to(62, [l[0]]);
+            cases.each(&DISTANCES, domain, |[l, near, far]| {
+                (l, DpsmLight { near, far, ..LIGHT }, SLACK)
+            });
+            cases.named(&LIGHTS, ", exact", any, |light| (3.0, light, (0.0, 0.0)));
         }
         "dpsm_bias_window" => {
-            cases.each(DISKS, |uv| (disk(uv), 0.5, layers));
-            cases.each(WINDOWS, |texels| (disk([0.3, -0.4]), texels, layers));
+            cases.each(&DISKS, |uv| up_to(30, uv), |uv| (disk(uv), 0.5, LIGHT));
+            cases.each(&WINDOWS, any, |texels| (inside, texels, LIGHT));
+            cases.each(&LIGHTS, any, |light| (inside, 0.5, light));
         }
         "dpsm_bias_plane" => {
-            let chords = [("chord 1/64", 1.0 / 4096.0), ("none", 0.0), ("90 degrees", 2.0)];
-            for (chord, square) in chords {
-                for (name, cosine) in cosines {
-                    let name = format!("{name}, {chord}");
-                    cases.each(&[(name, cosine)], |cosine| (cosine, 3.0, square, layers));
-                }
+            for (chord, square, _) in CHORDS.rows {
+                let behind = format!(", {chord}");
+                cases.named(&COSINES, &behind, any, |cosine| (cosine, 3.0, *square, LIGHT));
             }
+            cases.each(&CHORDS, any, |square| (0.5, 3.0, square, LIGHT));
+            cases.each(&LIGHTS, any, |light| (0.5, 3.0, 1.0 / 4096.0, light));
         }
         "dpsm_bias_footprint" => {
-            cases.each(NORMALS, |normal| (of(normal), disk([0.3, -0.4]), 0.5, layers));
-            cases.each(WINDOWS, |texels| (oblique, disk([0.6, 0.8]), texels, layers));
+            cases.each(&NORMALS, normals, |normal| (of(normal), inside, 0.5, LIGHT));
+            cases.each(&WINDOWS, any, |texels| (oblique, disk([0.6, 0.8]), texels, LIGHT));
+            cases.each(&LIGHTS, any, |light| (oblique, inside, 0.5, light));
         }
         "dpsm_bias_without_normal" => {
-            cases.each(&cosines, |cosine| (3.0, cosine, disk([0.3, -0.4]), (0.5, layers)));
+            cases.each(&COSINES, any, |cosine| (3.0, cosine, inside, (0.5, LIGHT)));
+            cases.each(&WINDOWS, any, |texels| (3.0, 0.5, inside, (texels, LIGHT)));
+            cases.each(&LIGHTS, any, |light| (3.0, 0.5, inside, (0.5, light)));
         }
         "dpsm_texel_centre" => {
-            cases.each(DISKS, |uv| (disk(uv), layers));
-            let edge = 1.0 + GUARD;
-            let corners = [("a corner", [edge, -edge]), ("outside the map", [-2.0, 3.0])];
-            cases.each(&corners, |uv| (disk(uv), layers));
+            cases.each(&DISKS, |uv| up_to(63, uv), |uv| (disk(uv), LIGHT));
+            cases.each(&LIGHTS, any, |light| (inside, light));
         }
         "dpsm_lookup_texel_centre" | "dpsm_lookup_texel_centre_or_own" => {
-            for (name, p) in POINTS {
-                let of = |light| {
-                    let p = point(*p);
-                    (p, dpsm_receiver(p, point([0.0, 0.6, -0.8])), light, SLACK)
-                };
-                cases.each(&[(format!("{name}, layers"), layers)], of);
-                cases.each(&[(format!("{name}, atlas"), light(DPSM_ATLAS))], of);
-            }
-            cases.each(NORMALS, |normal| (ordinary, of(normal), layers, SLACK));
+            cases.each(&POINTS, received, |p| (facing(p), LIGHT, SLACK));
+            cases.each(&NORMALS, normals, |normal| (normal_at(normal), LIGHT, SLACK));
+            cases.each(&LIGHTS, any, |light| (upright, light, SLACK));
         }
         "dpsm_lookup_along_centre" => {
-            let most = [("nothing", 0.0), ("own", 3.741_657_5), ("far", 10.0)];
-            cases.each(&most, |most| (ordinary, oblique, most, (layers, SLACK)));
+            cases.each(&POINTS, received, |p| (facing(p), 3.0, LIGHT, SLACK));
+            cases.each(&LIMITS, any, |most| (upright, most, LIGHT, SLACK));
+            cases.each(&LIGHTS, any, |light| (upright, 3.0, light, SLACK));
+        }
+        "dpsm_lookup_biased" => {
+            cases.each(&POINTS, received, |p| (point(p), 0.01, LIGHT, SLACK));
+            cases.each(&LIGHTS, any, |light| (ordinary, 0.01, light, SLACK));
         }
         "dpsm_cube_slack" => {
-            let distances = [("near", 0.1), ("far", 10.0), ("behind", -1.0)];
-            cases.each(&distances, |z| (z, layers, SLACK.0));
+            let domain = |[l, near, _]: [f32; 3]| -> Promise {
+                // nearer ones count as near
+                let promise = up_to(62, [l]);
+                if l < near { promise.min(Promise::Finite) } else { promise }
+            };
+            cases.each(&DISTANCES, domain, |[l, near, far]| {
+                (l, DpsmLight { near, far, ..LIGHT }, SLACK.0)
+            });
+            cases.each(&LIGHTS, any, |light| (3.72, light, SLACK.0));
         }
         "dpsm_cube_lookup_along_centre" => {
-            cases.each(POINTS, |p| {
-                let p = point(p);
-                (p, dpsm_receiver(p, point([0.0, 0.6, -0.8])), 3.0, (layers, SLACK.0))
-            });
-            cases.each(NORMALS, |normal| (ordinary, of(normal), 10.0, (layers, SLACK.0)));
+            cases.each(&POINTS, received, |p| (facing(p), 3.0, LIGHT, SLACK.0));
+            cases.each(&NORMALS, normals, |normal| (normal_at(normal), 10.0, LIGHT, SLACK.0));
+            cases.each(&LIMITS, any, |most| (upright, most, LIGHT, SLACK.0));
+            cases.each(&LIGHTS, any, |light| (upright, 3.0, light, SLACK.0));
         }
         "dpsm_cube_lookup_footprint" => {
-            cases.each(POINTS, |p| {
-                let p = point(p);
-                (p, dpsm_receiver(p, point([0.0, 0.6, -0.8])), 0.5, (layers, SLACK.0))
-            });
-            cases.each(NORMALS, |normal| (ordinary, of(normal), 1.0, (layers, SLACK.0)));
+            cases.each(&POINTS, received, |p| (facing(p), 0.5, LIGHT, SLACK.0));
+            cases.each(&NORMALS, normals, |normal| (normal_at(normal), 1.0, LIGHT, SLACK.0));
+            cases.each(&WINDOWS, any, |texels| (upright, texels, LIGHT, SLACK.0));
+            cases.each(&LIGHTS, any, |light| (upright, 0.5, light, SLACK.0));
         }
         "dpsm_cube_lookup_without_normal" => {
-            cases.each(POINTS, |p| (point(p), 0.5, 0.5, (layers, SLACK.0)));
+            cases.each(&POINTS, received, |p| (point(p), 0.5, 0.5, LIGHT, SLACK.0));
+            cases.each(&COSINES, any, |cosine| (ordinary, cosine, 0.5, LIGHT, SLACK.0));
+            cases.each(&WINDOWS, any, |texels| (ordinary, 0.5, texels, LIGHT, SLACK.0));
+            cases.each(&LIGHTS, any, |light| (ordinary, 0.5, 0.5, light, SLACK.0));
         }
         "dpsm_cube_lookup_rising" => {
-            cases.each(POINTS, |p| (point(p), 1.0, 0.01, (layers, SLACK.0)));
+            cases.each(&POINTS, received, |p| (point(p), 1.0, 0.01, LIGHT, SLACK.0));
+            cases.each(&LIGHTS, any, |light| (ordinary, 1.0, 0.01, light, SLACK.0));
         }
-        "dpsm_lookup_biased" => cases.each(POINTS, |p| (point(p), 0.01, layers, SLACK)),
         _ => {}
     }
 }

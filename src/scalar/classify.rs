@@ -7,7 +7,7 @@ use super::edge::{
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip};
 use super::light::DpsmLight;
-use super::paraboloid::{dpsm_project, dpsm_texel_width};
+use super::paraboloid::{DPSM_SMALLEST, dpsm_project, dpsm_texel_width};
 use super::triangle::{DPSM_TRIANGLE_CHORD, DpsmHull, dpsm_triangle_plane};
 
 /// Not drawn: outside the clipping spheres, without area, not finite, or between texel centres.
@@ -51,6 +51,12 @@ pub const DPSM_CLASSIFY_RIM: f64 = 0.9999;
 
 /// Texel centres a side up to which a triangle's are tried one by one.
 pub const DPSM_CLASSIFY_CENTRES: f64 = 4.0;
+
+/// Smallest facing of a plane that is told from edge-on.
+pub const DPSM_CLASSIFY_FACING: f64 = 1.0 / (1u64 << 60) as f64;
+
+/// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
+pub const DPSM_CLASSIFY_SPREAD: f64 = (1u64 << 40) as f64;
 
 /// True where every component is a number up to 2^62.
 pub fn dpsm_classify_usable<T: Float>(p: Vec3<T>) -> bool {
@@ -136,18 +142,22 @@ pub fn dpsm_classify_flat_error<T: Float>(
     let next = Vec3::new(distances.y, distances.z, distances.x);
     let errors = (distances + next) * half - Vec3::new(ab, bc, ca);
     let nearest = distances.x.min(distances.y).min(distances.z);
-    let spread = (distances.x.max(distances.y).max(distances.z) - nearest) / nearest;
+    let farther = distances.x.max(distances.y).max(distances.z) - nearest;
+    let unit = nearest.max(T::lit(DPSM_SMALLEST));
+    let spread = (farther / unit).min(T::lit(DPSM_CLASSIFY_SPREAD));
     let square = |side: Vec2<T>| side.dot(side);
     let sides = [hull.b - hull.a, hull.c - hull.b, hull.a - hull.c].map(square);
     let longest = sides[0].max(sides[1]).max(sides[2]);
     let unseen = T::lit(0.25) * spread * (longest + spread * spread);
-    T::lit(1.5) * errors.x.abs().max(errors.y.abs()).max(errors.z.abs()) / nearest + unseen
+    T::lit(1.5) * errors.x.abs().max(errors.y.abs()).max(errors.z.abs()) / unit + unseen
 }
 
 /// The distance of a plane (unit normal, height) in the direction of uv; below 0 behind.
 pub fn dpsm_classify_distance<T: Float>(plane: Vec4<T>, uv: Vec2<T>) -> T {
-    let terms = dpsm_edge_terms(uv);
-    plane.w * (T::lit(1.0) + uv.dot(uv)) / plane.xyz().dot(terms.xyz())
+    let facing = plane.xyz().dot(dpsm_edge_terms(uv).xyz());
+    let least = T::lit(DPSM_CLASSIFY_FACING);
+    let seen = select(facing, least, facing.abs() < least);
+    plane.w * (T::lit(1.0) + uv.dot(uv)) / seen
 }
 
 /// True where a triangle of disk corners covers no texel centre, whether its edges are drawn as

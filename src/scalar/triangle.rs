@@ -76,7 +76,9 @@ pub fn dpsm_triangle<T: Float>(
     let second = select(b, c, turned);
     let third = select(c, b, turned);
     let farthest = a.length().max(b.length()).max(c.length());
-    let height = plane.w.abs().max(farthest * T::lit(DPSM_TRIANGLE_HEIGHT));
+    // 2^-120: below every share within the domain; all vertices may be at the light
+    let least = T::lit(1.0 / (1u128 << 120) as f64);
+    let height = plane.w.abs().max(farthest * T::lit(DPSM_TRIANGLE_HEIGHT)).max(least);
     let outward = select(plane.xyz(), -plane.xyz(), turned);
     DpsmTriangle {
         first: dpsm_edge_line(a, second, light, tau),
