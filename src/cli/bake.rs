@@ -70,8 +70,8 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "computed_by": describe(device.as_ref()),
     });
     let mut outputs = Outputs::for_option("-o");
-    outputs.add(path, &exr_bytes(path, &frame, &maps)?)?;
-    outputs.add(&beside, pretty(&parameters)?.as_bytes())?;
+    outputs.add(path, exr_bytes(path, &frame, &maps)?)?;
+    outputs.add(&beside, pretty(&parameters)?.into())?;
     let written = outputs.finish()?;
     if arguments.json {
         return print(&pretty(&serde_json::json!({ "written": written, "light": parameters }))?);

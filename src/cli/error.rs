@@ -78,9 +78,18 @@ pub enum CliError {
 impl CliError {
     /// 2 for bad input, 1 for what failed on good input.
     pub fn code(&self) -> u8 {
+        use std::io::ErrorKind as Kind;
         match self {
+            CliError::Write { source, .. } => match source.kind() {
+                Kind::StorageFull | Kind::QuotaExceeded | Kind::FileTooLarge => 1,
+                _ => 2,
+            },
             CliError::Gpu(
-                GpuError::Rejected { .. } | GpuError::Lost { .. } | GpuError::OutOfMemory { .. },
+                GpuError::NoDevice { .. }
+                | GpuError::Rejected { .. }
+                | GpuError::OutOfMemory { .. }
+                | GpuError::Lost { .. }
+                | GpuError::Hung { .. },
             )
             | CliError::Encode { .. }
             | CliError::Exr { .. } => 1,

@@ -31,7 +31,8 @@ pub struct Arguments {
     /// What computes: an adapter if there is one, the processor, or an adapter or nothing
     ///
     /// WGPU_ADAPTER_NAME (part of its name) and WGPU_BACKEND (vulkan, metal, dx12) choose the
-    /// adapter. `cpu` runs the scalar ports.
+    /// adapter. `cpu` runs the scalar ports. DPSM_PATIENCE is how many seconds one step may take on
+    /// an adapter, 120 by default.
     #[arg(long, global = true, value_enum, default_value = "auto")]
     adapter: AdapterChoice,
     /// Folder for the pictures when no command is given
@@ -89,6 +90,21 @@ pub fn run(arguments: Arguments) -> Result<(), CliError> {
     }
 }
 
+/// Says what went wrong and ends the program.
+pub fn fail(error: &CliError) -> ! {
+    eprintln!("dpsm: {error}");
+    leave(error.code())
+}
+
+/// Ends the program at once: a driver that is still at work, as after a hang, may wait for ever or
+/// crash when the process is taken down in order. What was printed is flushed.
+pub fn leave(code: u8) -> ! {
+    unsafe extern "C" {
+        safe fn _exit(code: std::ffi::c_int) -> !;
+    }
+    _exit(code.into())
+}
+
 impl AdapterChoice {
     /// Opens the adapter; `None` means the scalar ports, and stderr says why.
     fn open(self) -> Result<Option<Device>, CliError> {
@@ -96,10 +112,16 @@ impl AdapterChoice {
             return Ok(None);
         }
         match Device::open() {
-            Ok(device) => Ok(Some(device)),
-            Err(error @ (GpuError::NoAdapter { .. } | GpuError::NoDevice { .. }))
-                if self == AdapterChoice::Auto =>
-            {
+            Ok(device) => {
+                // nothing is being written while the adapter works
+                device.watch(|error| fail(&error.into()));
+                Ok(Some(device))
+            }
+            Err(
+                error @ (GpuError::NoAdapter { .. }
+                | GpuError::NoDevice { .. }
+                | GpuError::Hung { .. }),
+            ) if self == AdapterChoice::Auto => {
                 eprintln!("dpsm: {error}");
                 eprintln!("dpsm: running the scalar ports on the processor instead");
                 Ok(None)

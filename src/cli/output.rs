@@ -1,15 +1,17 @@
 //! Files that appear whole or not at all, and standard output that may be closed early.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{Error, Write};
 use std::path::{Path, PathBuf};
 
 use dpsm::render::Picture;
+use tempfile::NamedTempFile;
 
 use super::CliError;
 
-/// Files that are written aside and moved to their places together.
+/// Files that are kept until the command is done, and then appear all together or not at all.
 pub struct Outputs {
-    files: Vec<(PathBuf, tempfile::NamedTempFile)>,
+    files: Vec<(PathBuf, Vec<u8>)>,
     /// The option that says where they go, for messages.
     option: &'static str,
 }
@@ -20,34 +22,18 @@ impl Outputs {
         Self { files: Vec::new(), option }
     }
 
-    /// Adds a file's bytes; nothing shows under `path` yet. A link's target is replaced, not the
-    /// link; a pipe or a device is refused, as it can take no whole file.
-    pub fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-        let wrap = |source| CliError::Write { path: path.into(), source, remedy: self.option };
+    /// Adds a file's bytes; nothing is written yet. A link's target is replaced, not the link; a
+    /// pipe or a device is refused, as it can take no whole file.
+    pub fn add(&mut self, path: &Path, bytes: Vec<u8>) -> Result<(), CliError> {
         let target = path.canonicalize().unwrap_or_else(|_| path.into());
         if target.exists() && !target.is_file() {
             let what = if target.is_dir() { "it is a folder" } else { "it is no regular file" };
-            return Err(wrap(std::io::Error::other(what)));
+            return Err(self.unwritable(path, Error::other(what)));
         }
         if target.metadata().is_ok_and(|metadata| metadata.permissions().readonly()) {
-            return Err(wrap(std::io::ErrorKind::PermissionDenied.into()));
+            return Err(self.unwritable(path, std::io::ErrorKind::PermissionDenied.into()));
         }
-        let path = target.as_path();
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        let mut builder = tempfile::Builder::new();
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // the user's umask decides, as for any other file
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let created = builder.prefix(".dpsm-").tempfile_in(folder);
-        let mut file = created.map_err(|error| wrap(error.kind().into()))?;
-        file.write_all(bytes).map_err(wrap)?;
-        self.files.push((path.into(), file));
+        self.files.push((target, bytes));
         Ok(())
     }
 
@@ -63,21 +49,79 @@ impl Outputs {
                 image::ExtendedColorType::Rgba8,
             )
             .map_err(|source| CliError::Encode { path: path.into(), source })?;
-        self.add(path, &bytes)
+        self.add(path, bytes)
     }
 
-    /// Moves all files to their places and names them.
+    /// Writes all files and names them: aside first, then each is moved to its place. Where one
+    /// cannot be, those before it are taken back.
     pub fn finish(self) -> Result<Vec<PathBuf>, CliError> {
-        let mut paths = Vec::new();
-        for (path, file) in self.files {
-            file.persist(&path).map_err(|error| CliError::Write {
-                path: path.clone(),
-                source: error.error,
-                remedy: self.option,
-            })?;
-            paths.push(path);
+        let write = |(path, bytes): &(PathBuf, Vec<u8>)| {
+            aside(path, bytes).map_err(|source| self.unwritable(path, source))
+        };
+        let written = self.files.iter().map(write).collect::<Result<Vec<_>, _>>()?;
+        let mut placed = Vec::new();
+        for (file, (path, _)) in written.into_iter().zip(&self.files) {
+            let moved = kept(path).and_then(|old| {
+                file.persist(path)?;
+                Ok(old)
+            });
+            match moved {
+                Ok(old) => placed.push((path, old)),
+                Err(source) => {
+                    take_back(placed);
+                    return Err(self.unwritable(path, source));
+                }
+            }
         }
-        Ok(paths)
+        Ok(self.files.into_iter().map(|(path, _)| path).collect())
+    }
+
+    fn unwritable(&self, path: &Path, source: Error) -> CliError {
+        CliError::Write { path: path.into(), source, remedy: self.option }
+    }
+}
+
+/// A name of its own beside a file, that vanishes unless it is moved.
+fn beside<T>(
+    path: &Path,
+    make: impl FnMut(&Path) -> std::io::Result<T>,
+) -> std::io::Result<NamedTempFile<T>> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    // the kind alone: the message names the file that was asked for
+    tempfile::Builder::new().prefix(".dpsm-").make_in(folder, make).map_err(|e| e.kind().into())
+}
+
+/// The bytes in a file beside the one that they are for, down to the disk: only then is it known
+/// that there is room.
+fn aside(path: &Path, bytes: &[u8]) -> std::io::Result<NamedTempFile<File>> {
+    // the user's umask decides who may read it, as for any other file
+    let mut aside = beside(path, |path| File::create_new(path))?;
+    let file = aside.as_file_mut();
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    Ok(aside)
+}
+
+/// What a file holds now under another name, if there is one.
+fn kept(path: &Path) -> std::io::Result<Option<NamedTempFile<()>>> {
+    let link = |aside: &Path| {
+        let linked = std::fs::hard_link(path, aside);
+        // not every file system has links
+        linked.or_else(|_| std::fs::copy(path, aside).map(drop))
+    };
+    path.exists().then(|| beside(path, link)).transpose()
+}
+
+/// Puts back what was there. What cannot be put back is left: the first error is the one to tell.
+fn take_back(placed: Vec<(&PathBuf, Option<NamedTempFile<()>>)>) {
+    for (path, old) in placed.into_iter().rev() {
+        let _ = match old {
+            Some(old) => old.persist(path).map_err(|error| error.error),
+            None => std::fs::remove_file(path),
+        };
     }
 }
 
@@ -96,7 +140,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
 pub fn write_or_print(path: Option<&Path>, text: &str) -> Result<(), CliError> {
     let Some(path) = path else { return print(text) };
     let mut outputs = Outputs::for_option("-o");
-    outputs.add(path, text.as_bytes())?;
+    outputs.add(path, text.into())?;
     outputs.finish()?;
     Ok(())
 }

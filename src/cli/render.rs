@@ -69,8 +69,6 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 /// `dpsm` with no command: the two scenes of Brabec, Annen and Seidel 2002.
 pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
     let device = adapter.open()?;
-    let unwritable = |source| CliError::Write { path: folder.into(), source, remedy: "--folder" };
-    std::fs::create_dir_all(folder).map_err(unwritable)?;
     let mut outputs = Outputs::for_option("--folder");
     let mut report = format!("{}\n", describe(device.as_ref()));
     for name in ["brabec-room", "brabec-ceiling"] {
@@ -86,6 +84,8 @@ pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
         let output = folder.join(format!("{name}.png"));
         report.push_str(&picture(device.as_ref(), name, &frame, &output, &mut outputs)?);
     }
+    let unwritable = |source| CliError::Write { path: folder.into(), source, remedy: "--folder" };
+    std::fs::create_dir_all(folder).map_err(unwritable)?;
     finish(report, outputs)
 }
 

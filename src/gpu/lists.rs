@@ -6,7 +6,7 @@ use wgpu::BufferUsages as Usage;
 use super::mesh::MeshBuffers;
 use super::passes::{bind, shader, storage, uniform_entry};
 use super::timer::{Ends, Stamps, compute_writes};
-use super::{Device, GpuError};
+use super::{Device, GpuError, storage_bytes};
 
 /// Indirect draws of the sorted classes, each list's front before its back.
 pub const FLAT: u64 = 0;
@@ -63,14 +63,14 @@ pub struct Lists {
 impl Lists {
     /// Triangles in a chunk, by the adapter's limit on what a shader may bind.
     pub fn chunk(device: &Device, triangles: u32) -> u32 {
-        let limit = device.device.limits().max_storage_buffer_binding_size;
+        let limit = storage_bytes(&device.device.limits());
         let fits = (limit / (2 * RECORD_BYTES)).saturating_sub(Self::extra(device).into());
         triangles.clamp(1, fits.clamp(1, LARGEST_CHUNK) as u32)
     }
 
     /// Room for parts beyond one a triangle, in each map: at most half of what can be bound.
     pub fn extra(device: &Device) -> u32 {
-        let limit = device.device.limits().max_storage_buffer_binding_size;
+        let limit = storage_bytes(&device.device.limits());
         (limit / (4 * RECORD_BYTES)).min(EXTRA) as u32
     }
 

@@ -84,13 +84,7 @@ impl MeshBuffers {
         };
         let surfaces: Vec<Surface> = frame.vertices.iter().zip(&masks).map(surface).collect();
         let geometry = Usage::VERTEX | Usage::STORAGE;
-        let upload = |label, bytes: &[u8], usage| {
-            let limit = device.device.limits().max_storage_buffer_binding_size;
-            match bytes.len() as u64 > limit {
-                true => Err(GpuError::Limit { what: label, asked: bytes.len() as u64, limit }),
-                false => device.upload(label, bytes, usage),
-            }
-        };
+        let upload = |label, bytes: &[u8], usage| device.upload(label, bytes, usage);
         let indices = bytemuck::cast_slice(frame.triangles.as_flattened());
         Ok(Self {
             positions: upload("vertex position bytes", bytemuck::cast_slice(&positions), geometry)?,

@@ -93,7 +93,7 @@ impl Texels {
         let texture = depth_texture(device, [maps.size; 2], maps.layers, format.texture())?;
         let bytes: &[u8] = bytemuck::cast_slice(&maps.depths);
         let depths =
-            device.buffer("depths", bytes.len() as u64, Usage::STORAGE | Usage::COPY_DST)?;
+            device.buffer("depth bytes", bytes.len() as u64, Usage::STORAGE | Usage::COPY_DST)?;
         let encoder = device.encode("writing the maps", |encoder| {
             device.queue.write_buffer(&depths, 0, bytes);
             let pipeline = self.upload_pipeline(device, maps.size, format);

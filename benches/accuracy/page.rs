@@ -1,0 +1,161 @@
+//! The table on the terminal, and docs/accuracy.md.
+
+use std::fmt::Write;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use dpsm::accuracy::{BINS, Stats};
+use dpsm::scalar::bounds::Unit;
+
+use super::Row;
+
+/// The largest share of the bound on any implementation.
+fn most(row: &Row) -> f64 {
+    let others = row.others.iter().flatten().map(|stats| stats.worst.share());
+    others.fold(row.port.worst.share(), f64::max)
+}
+
+/// The largest error in eps, as a share of the interval, or nothing where there is none.
+fn largest(row: &Row, stats: Option<&Stats>) -> String {
+    match (row.judge.bound.unit, stats) {
+        (_, None) => "-".into(),
+        (Unit::Exact, Some(stats)) if stats.broken == 0 => "0".into(),
+        (_, Some(stats)) => format!("{:.2}", stats.worst.eps),
+    }
+}
+
+/// The bound at the worst input.
+fn bound(row: &Row) -> String {
+    match row.judge.bound.unit {
+        Unit::Exact => "exact".into(),
+        Unit::Interval => "interval".into(),
+        _ => format!("{:.1}", row.port.worst.bound),
+    }
+}
+
+/// One line of the terminal's table.
+pub fn line(row: &Row) -> String {
+    let others: String =
+        row.others.iter().map(|stats| format!("{:>8}", largest(row, stats.as_ref()))).collect();
+    format!(
+        "{:<34}{:>10}{:>9}{:>8}{others}{:>8.2}",
+        row.judge.bound.function,
+        row.port.points,
+        bound(row),
+        largest(row, Some(&row.port)),
+        1.0 - most(row)
+    )
+}
+
+/// The function's `Domain:` text up to the end of its comment.
+fn promise(row: &Row) -> String {
+    let text = dpsm::module(row.judge.bound.module).map_or("", |module| module.text);
+    let end = text.find(&format!("fn {}(", row.judge.bound.function)).unwrap_or(0);
+    let comment = text[..end].rsplit("\n\n").next().unwrap_or("");
+    let lines = comment.lines().map(|line| line.trim_start_matches("///").trim());
+    let joined = lines.collect::<Vec<_>>().join(" ");
+    let from = ["Domain", "Bound:", "Exact"].iter().filter_map(|word| joined.find(word)).min();
+    joined[from.unwrap_or(0)..].trim().replace('|', "\\|")
+}
+
+/// A histogram of the shares of the bound, its bars by the logarithm of their counts.
+fn histogram(stats: &Stats) -> String {
+    let most = stats.histogram.iter().copied().max().unwrap_or(0).max(1) as f64;
+    let mut bars = String::new();
+    for (bin, &count) in stats.histogram.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let height = 2.0 + 14.0 * (count as f64).ln_1p() / most.ln_1p();
+        let colour = if bin == BINS - 1 { "#d62728" } else { "#1f77b4" };
+        let (x, y) = (4 * bin, 16.0 - height);
+        let _ = write!(
+            bars,
+            r#"<rect x="{x}" y="{y:.1}" width="3" height="{height:.1}" fill="{colour}"/>"#
+        );
+    }
+    let width = 4 * BINS;
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="17"><path d="M0 16.5h80" stroke="#888"/>{bars}</svg>
+"##
+    )
+}
+
+fn hex(input: &[u32]) -> String {
+    input.iter().map(|bits| format!("{bits:08x}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Writes docs/accuracy.md, docs/pictures/accuracy/ and src/cases/worst.txt.
+pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let pictures = root.join("docs/pictures/accuracy");
+    fs::create_dir_all(&pictures)?;
+    let mut text = INTRODUCTION.to_string();
+    text.push_str("\nImplementations, beside the f32 port:\n\n");
+    for (k, name) in names.iter().enumerate() {
+        let _ = writeln!(text, "{}. {name}", k + 1);
+    }
+    let columns: String = (1..=names.len()).map(|k| format!(" {k} |")).collect();
+    let rules = "---|".repeat(names.len());
+    let mut worst = String::new();
+    let mut module = "";
+    for row in rows {
+        let bound_of = row.judge.bound;
+        if bound_of.module != module {
+            module = bound_of.module;
+            let _ = write!(
+                text,
+                "\n## [{module}]({page}.md)\n\n| function | bound | unit | WGSL allows | port |{columns} slack | 99% | mean | rounded | other | open | points | shares |\n|---|---|---|---|---|{rules}---|---|---|---|---|---|---|---|\n",
+                page = page(module)
+            );
+        }
+        fs::write(pictures.join(format!("{}.svg", bound_of.function)), histogram(&row.port))?;
+        let unit = format!("{:?}", bound_of.unit).to_lowercase();
+        let others: String =
+            row.others.iter().map(|stats| format!(" {} |", largest(row, stats.as_ref()))).collect();
+        let share = |count: u64| count as f64 / row.port.points.max(1) as f64;
+        let allowed = match bound_of.unit {
+            Unit::Exact | Unit::Interval | Unit::Angle => "".to_string(),
+            _ => format!("{:.2}", row.allowed.eps),
+        };
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {unit} | {allowed} | {} |{others} {:.2} | {:.2} | {:.3} | {:.1}% | {} | {} | {} | ![]({}) |",
+            bound_of.function,
+            bound(row),
+            largest(row, Some(&row.port)),
+            1.0 - most(row),
+            row.port.percentile(),
+            row.port.mean(),
+            100.0 * share(row.port.rounded),
+            row.port.decisions,
+            row.port.open,
+            row.port.points,
+            format_args!("pictures/accuracy/{}.svg", bound_of.function),
+        );
+        if !row.port.input.is_empty() {
+            let _ = writeln!(worst, "{} {}", bound_of.function, hex(&row.port.input));
+        }
+    }
+    text.push_str("\n## Domains, bounds and worst inputs\n\nThe text is the WGSL function's own comment; the input is the port's worst, the bits of its words in hexadecimal.\n\n");
+    for row in rows {
+        let function = row.judge.bound.function;
+        let _ = write!(text, "- `{function}`: {}", promise(row));
+        match row.port.input.is_empty() {
+            true => text.push('\n'),
+            false => {
+                let _ = writeln!(text, " Worst: `{}`.", hex(&row.port.input));
+            }
+        }
+    }
+    fs::write(root.join("docs/accuracy.md"), text)?;
+    fs::write(root.join("src/cases/worst.txt"), worst)
+}
+
+/// The page that has a module's derivations.
+fn page(module: &str) -> &str {
+    match module {
+        "pcss" | "raw" | "lights" => "filter",
+        module => module,
+    }
+}
+
+const INTRODUCTION: &str = include_str!("introduction.md");
