@@ -44,6 +44,10 @@ pub enum ValidateError {
          or the function"
     )]
     TooDeep { file: String, limit: usize },
+
+    /// So many declarations that, if each used the next, naga would overflow its stack.
+    #[error("{file}: more than {limit} declarations; leave out what is not used")]
+    TooMany { file: String, limit: usize },
 }
 
 /// What is wrong, and where. Displays in the style of a compiler.
@@ -112,6 +116,10 @@ const STACK: usize = 256 << 20;
 /// Operators in a row, or `else` in a function; shaders people write stay far below.
 const DEEPEST: usize = 2000;
 
+/// Declarations of a text. naga follows them from use to use, one inside the other; without
+/// optimisation that takes below 840 bytes for each (docs/fuzzing.md), a third of the stack for all.
+const MOST_DECLARATIONS: usize = 100_000;
+
 /// Parses and validates a linked text by all of naga's rules.
 ///
 /// Every capability is allowed: which of them a device has is known only where it is opened, and
@@ -129,9 +137,14 @@ const DEEPEST: usize = 2000;
 /// ```
 pub fn validate(linked: &Linked) -> Result<Validated, ValidateError> {
     let file = || linked.name().to_owned();
-    if depth(&linked.text) > DEEPEST {
+    let (depth, declarations) = extent(&linked.text);
+    if depth > DEEPEST {
         let limit = DEEPEST;
         return Err(ValidateError::TooDeep { file: file(), limit });
+    }
+    if declarations > MOST_DECLARATIONS {
+        let limit = MOST_DECLARATIONS;
+        return Err(ValidateError::TooMany { file: file(), limit });
     }
     let run = || catch_unwind(|| check(linked));
     let result = thread::scope(|scope| {
@@ -212,10 +225,11 @@ fn label(linked: &Linked, span: Span, text: &str) -> Option<Label> {
     })
 }
 
-/// How deep naga could recurse: operators in a row, brackets included, or branches in a function.
-fn depth(text: &str) -> usize {
+/// How deep naga could recurse: operators in a row, brackets included, or branches in a function;
+/// and how many declarations there are.
+fn extent(text: &str) -> (usize, usize) {
     let source = Source::new("", text);
-    let (mut deepest, mut branches, mut braces) = (0, 0, 0usize);
+    let (mut deepest, mut branches, mut braces, mut declarations) = (0, 0, 0usize, 0);
     // For each open bracket the operators so far in its argument, and the most in one argument.
     let mut open = vec![(0, 0)];
     for token in tokenize(&source).unwrap_or_default() {
@@ -241,6 +255,7 @@ fn depth(text: &str) -> usize {
                 }
                 if braces == 0 {
                     branches = 0;
+                    declarations += 1;
                 }
             }
             "else" => branches += 1,
@@ -252,7 +267,7 @@ fn depth(text: &str) -> usize {
         let (now, most) = open.last().copied().unwrap_or_default();
         deepest = deepest.max(now).max(most).max(branches);
     }
-    deepest
+    (deepest, declarations)
 }
 
 fn panic_message(panic: &(dyn Any + Send)) -> String {

@@ -420,6 +420,8 @@ fn probe_names_the_line_and_column_of_a_bad_point() {
         refused("measure-tau", &["measure", "cornell", "--tau", tau], &["--tau", tau]);
     }
     refused("bake-name", &["bake", "cornell", "-o", "maps.png"], &["maps.png", "EXR"]);
+    // said before the scene is read
+    refused("bake-first", &["bake", "nowhere.obj", "-o", "maps.png"], &["maps.png", "EXR"]);
     refused("probe-missing", &probe("nowhere.csv"), &["nowhere.csv"]);
 }
 
@@ -553,4 +555,16 @@ fn cube_renders_bakes_probes_and_measures_its_six_faces() {
     let all = &json["map"]["all"];
     assert_eq!((&all["texels"], &all["faults_off"]), (&(6 * 30 * 30).into(), &0.into()));
     assert_eq!(json["meshes"], serde_json::json!([]));
+}
+
+#[test]
+fn csv_files_take_time_as_their_length_not_its_square() {
+    let folder = folder("long");
+    let path = folder.join("long.csv");
+    std::fs::write(&path, "x,y,z\n".to_string() + &"0,0,0\n".repeat(200_000) + "0,0,x\n").unwrap();
+    let begun = std::time::Instant::now();
+    let points = ["probe", "cornell", "--points", path.to_str().unwrap()];
+    refused("long-csv", &points, &["long.csv:200002", "column `z`: `x`"]);
+    // a tenth of a second; to count all lines before each again takes minutes
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }

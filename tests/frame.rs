@@ -44,7 +44,7 @@ const CORNERS: [Vec2; 4] = [vec2(-1.0, -1.0), vec2(-1.0, 1.0), vec2(1.0, 1.0), v
 
 /// The same with a checkerboard of 2 x 2: opaque where x and z have the same sign.
 fn masked(name: &str, height: f32, half: f32) -> Mesh {
-    let mask = Mask { width: 2, height: 2, alpha: vec![255, 0, 0, 255], cutoff: 0.5 };
+    let mask = Mask { width: 2, height: 2, alpha: [255, 0, 0, 255].into(), cutoff: 0.5 };
     let texcoords = CORNERS.map(|corner| corner * 0.5 + 0.5).to_vec();
     Mesh { texcoords, mask: Some(mask), ..square(name, height, half) }
 }
@@ -126,7 +126,7 @@ fn meshes_that_do_not_fit_together_are_refused_by_name() {
         "mesh `x`: a mask of 3 x 2 texels has 4 alphas and the cutoff 0.5; \
          give each texel one, at least one texel, and a number for the cutoff"
     );
-    let nothing = |mask: &mut Mask| (mask.width, mask.alpha) = (0, Vec::new());
+    let nothing = |mask: &mut Mask| (mask.width, mask.alpha) = (0, [].into());
     assert!(mask(nothing).contains("0 x 2 texels"));
     assert!(mask(|mask| mask.cutoff = f32::NAN).contains("the cutoff NaN"));
     assert!(mask(|mask| (mask.width, mask.height) = (1 << 31, 1 << 31)).contains("has 4 alphas"));
@@ -221,7 +221,7 @@ fn wholly_transparent_meshes_are_not_there_and_wholly_opaque_ones_are_like_unmas
     };
     let with = |alpha| {
         let mut mesh = masked("x", -1.0, 1.0);
-        mesh.mask.iter_mut().for_each(|mask| mask.alpha.fill(alpha));
+        mesh.mask.iter_mut().for_each(|mask| mask.alpha = [alpha; 4].into());
         Some(mesh)
     };
     for method in [Method::Vertex, Method::FragmentDepth] {

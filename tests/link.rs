@@ -756,6 +756,19 @@ fn what_naga_cannot_recurse_into_is_refused() {
 }
 
 #[test]
+fn more_declarations_than_naga_can_follow_are_refused() {
+    // each uses the next: naga goes into all of them before it comes back from the first
+    let chain = |count: usize| {
+        let links = (1..count).map(|i| format!("const a{}x = a{i}x;\n", i - 1));
+        let text = links.collect::<String>() + &format!("const a{}x = 1;\n", count - 1);
+        validate(&Catalogue::new().link_source("my.wesl", &text).unwrap())
+    };
+    chain(100_000).unwrap();
+    let message = "my.wesl: more than 100000 declarations; leave out what is not used";
+    assert_eq!(chain(100_001).unwrap_err().to_string(), message);
+}
+
+#[test]
 fn function_used_without_its_import_is_told_which_import_to_add() {
     let text = "fn f(l: f32) -> f32 { return dpsm_depth(l, 0.1, 1.0); }";
     let linked = dpsm::link_source("my.wesl", text).unwrap();

@@ -821,6 +821,24 @@ MUTATIONS = [
      "faults", "outputs::disk_that_is_full_leaves_every_file_as_it_was"),
     ("src/cli/render.rs", 'let mut outputs = Outputs::for_option("--folder");', 'let mut outputs = Outputs::for_option("--folder");\n    let _ = std::fs::create_dir_all(folder);',
      "faults", "lost::default_job_that_is_lost_leaves_no_folder"),
+    ("src/scene/load/named.rs", "match fs::metadata(path)?.is_file() {", "match fs::metadata(path)?.is_dir() {",
+     "scene", "named_files::devices_and_folders_that_a_file_names_are_refused"),
+    ("src/scene/load/named.rs", "escaped.filter(|_| first == b'%')", "escaped.filter(|_| first != b'%')",
+     "scene", "masks::embedded_linked_and_inlined_images_give_the_same_mask"),
+    ("src/scene/load/named.rs", "two.bytes().all(|byte| byte.is_ascii_hexdigit())", "two.len() == 2 && first != b'%'",
+     "scene", "named_files::devices_and_folders_that_a_file_names_are_refused"),
+    ("src/scene/load/primitive.rs", "accessor.count() > view.length()", "accessor.count() > usize::MAX - view.length()",
+     "scene", "named_files::sparse_accessors_of_more_elements_than_bytes_lie_outside_their_buffer"),
+    ("src/scene/load/alpha.rs", "limits.max_image_width = Some(LARGEST_IMAGE);", "",
+     "scene", "named_files::images_beyond_the_largest_texture_are_refused"),
+    ("src/scene/load/alpha.rs", "return Ok(known.clone());", "return Ok((known.0, known.1.iter().copied().collect()));",
+     "scene", "named_files::meshes_of_one_image_share_its_alphas"),
+    ("src/validate.rs", "declarations > MOST_DECLARATIONS", "declarations > 2 * MOST_DECLARATIONS",
+     "link", "more_declarations_than_naga_can_follow_are_refused"),
+    ("src/cli/table.rs", "if at < self.at {", "if at > 0 {",
+     "cli", "csv_files_take_time_as_their_length_not_its_square"),
+    ("src/cli/bake.rs", "    arguments.check()?;\n", "",
+     "cli", "probe_names_the_line_and_column_of_a_bad_point"),
 ]
 
 
@@ -828,7 +846,7 @@ def caught(test_file, test):
     """True when the test runs and fails; a mistake that does not compile proves nothing."""
     features = {
         "accuracy": [], "adapter": [], "maps": [], "cube": [], "render": [], "light": [],
-        "formats": [], "hard_cases": [], "faults": [],
+        "formats": [], "hard_cases": [], "faults": [], "cli": [],
         "measure": ["--no-default-features", "--features", "scene"],
         "frame": ["--no-default-features", "--features", "scene"],
         "scene": ["--no-default-features", "--features", "scene"],

@@ -24,7 +24,7 @@ Example:
   dpsm bake cornell --method cube -o faces.exr")]
 pub struct BakeArguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     /// The .exr file to write
     #[arg(short, long)]
     output: PathBuf,
@@ -33,17 +33,25 @@ pub struct BakeArguments {
     json: bool,
 }
 
+impl BakeArguments {
+    /// Refuses an output that is no EXR file, before there is anything to write.
+    pub fn check(&self) -> Result<(), CliError> {
+        let path = &self.output;
+        match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
+            true => Ok(()),
+            false => {
+                Err(CliError::Usage(format!("maps are EXR: name {} something.exr", path.display())))
+            }
+        }
+    }
+}
+
 /// `dpsm bake`.
 pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), CliError> {
+    arguments.check()?;
     let (scene, frame, maps, device) = prepare(adapter, &arguments.setup)?;
     let path = &arguments.output;
     let beside = path.with_extension("json");
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
-        return Err(CliError::Usage(format!(
-            "maps are EXR: name {} something.exr",
-            path.display()
-        )));
-    }
     let light = frame.light;
     let vector = |v: dpsm::scalar::float::Vec3<f32>| [v.x, v.y, v.z];
     let names = arguments.setup.names();

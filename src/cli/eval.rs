@@ -36,27 +36,34 @@ pub struct EvalArguments {
 }
 
 /// One input record.
-struct Record {
+pub struct Record {
     name: String,
     words: Vec<Word<f32>>,
 }
 
 pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), CliError> {
     let function = arguments.function.as_str();
-    let signature = signature(function)?;
-    let inputs = signature.inputs();
-    let records = match &arguments.input {
-        Some(path) => read_records(path, &inputs)?,
-        None => cases::of(function)
-            .into_iter()
-            .map(|case| Record { name: case.name, words: case.words })
-            .collect(),
-    };
+    let (signature, records) = inputs(arguments)?;
     let device = adapter.open()?;
     eprintln!("dpsm: {}", super::describe(device.as_ref()));
     let answers = device.map(|device| on_adapter(&device, function, &records)).transpose()?;
     let text = table(&signature, &records, answers.as_deref())?;
     write_or_print(arguments.output.as_deref(), &text)
+}
+
+/// What is evaluated, and at which records.
+pub fn inputs(arguments: &EvalArguments) -> Result<(Signature, Vec<Record>), CliError> {
+    let function = arguments.function.as_str();
+    let signature = signature(function)?;
+    let inputs = signature.inputs();
+    let records = match &arguments.input {
+        Some(path) => records(path, Table::read(path)?, &inputs)?,
+        None => cases::of(function)
+            .into_iter()
+            .map(|case| Record { name: case.name, words: case.words })
+            .collect(),
+    };
+    Ok((signature, records))
 }
 
 fn signature(function: &str) -> Result<Signature, CliError> {
@@ -161,9 +168,8 @@ fn integer<T>(word: Word<T>) -> u32 {
     }
 }
 
-/// Reads records by the header's names; a last part of a name is enough where it is unique.
-fn read_records(path: &Path, inputs: &[Component]) -> Result<Vec<Record>, CliError> {
-    let table = Table::read(path)?;
+/// Records by the header's names; a last part of a name is enough where it is unique.
+pub fn records(path: &Path, table: Table, inputs: &[Component]) -> Result<Vec<Record>, CliError> {
     let header = &table.header;
     let csv_error = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
     let wanted = inputs.iter().map(|c| c.path.as_str()).collect::<Vec<_>>().join(",");

@@ -28,7 +28,7 @@ Examples:
   dpsm measure atrium.obj --light 0,4,0 --method fragment-depth --json")]
 pub struct MeasureArguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     /// Surface points to judge
     #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     count: u32,
@@ -51,13 +51,18 @@ pub fn prepare(
     adapter: AdapterChoice,
     setup: &SetupArguments,
 ) -> Result<(String, Frame, DepthMaps, Option<Device>), CliError> {
-    let (scene, frame) = setup.frame(IMAGE, Lookup::Pixel, false)?;
+    let (scene, frame) = framed(setup)?;
     let device = adapter.open()?;
     let spinner = ProgressBar::new_spinner().with_message("maps");
     spinner.enable_steady_tick(std::time::Duration::from_millis(100));
     let maps = make_maps(device.as_ref(), &frame)?;
     spinner.finish_and_clear();
     Ok((scene, frame, maps, device))
+}
+
+/// The scene's name and frame, where no image is rendered.
+pub fn framed(setup: &SetupArguments) -> Result<(String, Frame), CliError> {
+    setup.frame(IMAGE, Lookup::Pixel, false)
 }
 
 /// A bar on stderr, where that is a terminal.

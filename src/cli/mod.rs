@@ -1,6 +1,8 @@
 //! Arguments, and the choice of the command.
 
 mod bake;
+#[cfg(fuzzing)]
+pub mod check;
 mod error;
 mod eval;
 mod measure;

@@ -29,10 +29,10 @@ Example:
   dpsm probe brabec-room --points points.csv --size 512 -o judged.csv")]
 pub struct ProbeArguments {
     #[command(flatten)]
-    setup: SetupArguments,
+    pub setup: SetupArguments,
     /// The points
     #[arg(long)]
-    points: PathBuf,
+    pub points: PathBuf,
     /// Write here instead of standard output
     #[arg(short, long)]
     output: Option<PathBuf>,
@@ -41,15 +41,18 @@ pub struct ProbeArguments {
     json: bool,
 }
 
+/// A position, with its unit normal where the file gives it.
+pub type Point = (DVec3, Option<DVec3>);
+
 /// `dpsm probe`.
 pub fn probe(adapter: AdapterChoice, arguments: &ProbeArguments) -> Result<(), CliError> {
-    let given = read_points(&arguments.points)?;
+    let given = points(&arguments.points, Table::read(&arguments.points)?)?;
     let (_, frame, maps, device) = prepare(adapter, &arguments.setup)?;
     eprintln!("dpsm: {}", describe(device.as_ref()));
     let truth = measure::truth_of(&frame);
     let bench = Bench::new(&frame, &maps, &truth);
     let progress = bar("points", given.len());
-    let judge = |&(position, normal): &(DVec3, Option<DVec3>)| {
+    let judge = |&(position, normal): &Point| {
         progress.inc(1);
         measure::judge(&bench, &bench.point_at(position, normal))
     };
@@ -108,8 +111,7 @@ fn row(judgement: &Judgement) -> Row {
 }
 
 /// Positions, with normals where the header has them.
-fn read_points(path: &Path) -> Result<Vec<(DVec3, Option<DVec3>)>, CliError> {
-    let table = Table::read(path)?;
+pub fn points(path: &Path, table: Table) -> Result<Vec<Point>, CliError> {
     let fault = |line: u64, message: String| CliError::Csv { path: path.into(), line, message };
     let names = ["x", "y", "z", "nx", "ny", "nz"];
     let header: Vec<&str> = table.header.iter().map(String::as_str).collect();

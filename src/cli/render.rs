@@ -89,8 +89,8 @@ pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
     finish(report, outputs)
 }
 
-/// `dpsm render`.
-pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(), CliError> {
+/// The scene's name and frame, checked before anything is opened or rendered.
+pub fn framed(arguments: &RenderArguments) -> Result<(String, Frame), CliError> {
     if !arguments.output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
     {
         let output = arguments.output.display();
@@ -100,7 +100,12 @@ pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(),
         LookupName::Pixel => Lookup::Pixel,
         LookupName::Vertex => Lookup::Vertex,
     };
-    let (scene, frame) = arguments.setup.frame(arguments.image, lookup, arguments.maps)?;
+    arguments.setup.frame(arguments.image, lookup, arguments.maps)
+}
+
+/// `dpsm render`.
+pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(), CliError> {
+    let (scene, frame) = framed(arguments)?;
     let device = adapter.open()?;
     let mut outputs = Outputs::for_option("-o");
     let picture = picture(device.as_ref(), &scene, &frame, &arguments.output, &mut outputs)?;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dpsm::{Catalogue, Linked};
+use dpsm::{Catalogue, Linked, Validated};
 
 use super::CliError;
 use super::output::{print, read_text, write_or_print};
@@ -48,7 +48,14 @@ pub fn modules() -> Result<(), CliError> {
 }
 
 pub fn link(arguments: &LinkArguments) -> Result<(), CliError> {
-    let linked = match arguments.names.as_slice() {
+    let linked = linked(arguments)?;
+    dpsm::validate(&linked)?;
+    write_or_print(arguments.output.as_deref(), &linked.text)
+}
+
+/// What the names or the file ask for.
+pub fn linked(arguments: &LinkArguments) -> Result<Linked, CliError> {
+    Ok(match arguments.names.as_slice() {
         [file] if is_file(file) => link_file(Path::new(file))?,
         names => {
             if let Some(file) = names.iter().find(|name| is_file(name)) {
@@ -57,19 +64,22 @@ pub fn link(arguments: &LinkArguments) -> Result<(), CliError> {
             }
             dpsm::link(&names.iter().map(String::as_str).collect::<Vec<_>>())?
         }
-    };
-    dpsm::validate(&linked)?;
-    write_or_print(arguments.output.as_deref(), &linked.text)
+    })
 }
 
 pub fn validate(arguments: &ValidateArguments) -> Result<(), CliError> {
-    let validated = dpsm::validate(&link_file(&arguments.file)?)?;
+    let validated = validated(arguments)?;
     print(&format!(
         "{}: valid, {} functions and {} entry points\n",
         arguments.file.display(),
         validated.module.functions.len(),
         validated.module.entry_points.len(),
     ))
+}
+
+/// What naga makes of the file.
+pub fn validated(arguments: &ValidateArguments) -> Result<Validated, CliError> {
+    Ok(dpsm::validate(&link_file(&arguments.file)?)?)
 }
 
 /// A module's name has neither a dot nor a slash.

@@ -2,6 +2,7 @@
 
 mod alpha;
 mod gltf;
+mod named;
 mod obj;
 mod primitive;
 

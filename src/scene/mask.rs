@@ -1,5 +1,7 @@
 //! Alpha masks: textures that cut holes into meshes.
 
+use std::sync::Arc;
+
 use glam::{DVec2, Vec2};
 
 /// Where a mesh has holes: glTF's `alphaMode: MASK`. It is opaque where the alpha of the nearest
@@ -13,8 +15,9 @@ pub struct Mask {
     pub width: u32,
     /// Rows, at least 1.
     pub height: u32,
-    /// Alpha in 255ths of each texel, row by row from texture coordinate v = 0.
-    pub alpha: Vec<u8>,
+    /// Alpha in 255ths of each texel, row by row from texture coordinate v = 0. Shared, as many
+    /// meshes may have the same.
+    pub alpha: Arc<[u8]>,
     /// The least alpha that is opaque, 1 being a byte of 255.
     pub cutoff: f32,
 }
@@ -63,7 +66,7 @@ impl Mask {
     /// Of alphas that are multiplied by a factor before they are compared with glTF's cutoff.
     pub(super) fn of_material(
         [width, height]: [u32; 2],
-        alpha: Vec<u8>,
+        alpha: Arc<[u8]>,
         factor: f32,
         cutoff: f32,
     ) -> Coverage {

@@ -7,6 +7,7 @@ mod gltf_faults;
 mod gltf_files;
 mod mask_faults;
 mod masks;
+mod named_files;
 mod obj_files;
 mod view;
 

@@ -495,7 +495,11 @@ kernel {
         |_, r, a| relative(&r[..3], &a[..3], 9.5);
     dpsm_kernel_disk Relative
         |i| point(&i[..3], -51, 50) && within(&i[3..], 0.0, two(10)),
-        |_, r, a| relative(r, a, 18.0);
+        |_, r, a| {
+            // k of up to 2^10 comes last
+            let each = |k: usize| absolute(&r[k..=k], &a[k..=k], 18.0, r[k].abs().max(two(-93)));
+            each(0).or(each(1)).or(each(2))
+        };
     dpsm_kernel_tap Absolute
         |i| length(&i[..2]) <= 1.0 && within(&i[2..3], 0.0, 1.0) && length(&i[4..]) <= 1.0 && i[3] <= 1.0,
         |_, r, a| absolute(&r[..2], &a[..2], 32.0, 1.0);

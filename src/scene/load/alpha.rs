@@ -1,14 +1,18 @@
 //! What the alpha of glTF materials leaves of their meshes.
 
 use std::collections::HashMap;
+use std::io::Cursor;
 use std::path::Path;
+use std::sync::Arc;
 
 use ::gltf::image::Source;
 use ::gltf::material::{AlphaMode, Material};
 use ::gltf::texture::{Texture, WrappingMode};
 use ::gltf::{Primitive, buffer};
+use ::image::{ImageReader, Limits};
 use glam::Vec2;
 
+use super::named;
 use crate::scene::SceneError;
 use crate::scene::mask::{Coverage, Mask};
 
@@ -18,8 +22,12 @@ const DEFAULT_CUTOFF: f32 = 0.5;
 /// Sizes and alphas of a file's images, each decoded once.
 pub(super) struct Images<'a> {
     pub path: &'a Path,
-    pub decoded: HashMap<usize, ([u32; 2], Vec<u8>)>,
+    pub decoded: HashMap<usize, ([u32; 2], Arc<[u8]>)>,
 }
+
+/// Most texels along a side of a mask's image: a file of a few kilobytes can ask for any number.
+/// As for a texture on every WebGPU adapter.
+const LARGEST_IMAGE: u32 = 8192;
 
 impl Images<'_> {
     /// What a material leaves of the mesh of that name.
@@ -42,7 +50,7 @@ impl Images<'_> {
         let color = material.pbr_metallic_roughness();
         // Without a texture the factor decides, as one opaque texel would let it.
         let (size, alpha) = match color.base_color_texture() {
-            None => ([1, 1], vec![u8::MAX]),
+            None => ([1, 1], Arc::from([u8::MAX])),
             Some(info) => {
                 let sampler = info.texture().sampler();
                 if [sampler.wrap_s(), sampler.wrap_t()] != [WrappingMode::Repeat; 2] {
@@ -66,7 +74,7 @@ impl Images<'_> {
         texture: &Texture,
         mesh: &str,
         buffers: &[buffer::Data],
-    ) -> Result<([u32; 2], Vec<u8>), SceneError> {
+    ) -> Result<([u32; 2], Arc<[u8]>), SceneError> {
         let image = texture.source();
         if let Some(known) = self.decoded.get(&image.index()) {
             return Ok(known.clone());
@@ -88,17 +96,25 @@ impl Images<'_> {
                     .ok_or_else(|| error("it lies outside its buffer".into()))?
             }
             Source::Uri { uri, .. } => {
-                let source = buffer::Source::Uri(uri);
-                file = buffer::Data::from_source_and_blob(source, self.path.parent(), &mut None)
-                    .map_err(|e| error(e.to_string()))?;
+                file = named::of_uri(uri, self.path.parent()).map_err(error)?;
                 &file[..]
             }
         };
-        let picture = ::image::load_from_memory(bytes).map_err(|e| error(e.to_string()))?;
+        let picture = decoded(bytes).map_err(|e| error(e.to_string()))?;
         let size = [picture.width(), picture.height()];
-        let alpha = picture.into_rgba8().pixels().map(|pixel| pixel.0[3]).collect();
+        let alpha: Arc<[u8]> = picture.into_rgba8().pixels().map(|pixel| pixel.0[3]).collect();
         Ok(self.decoded.entry(image.index()).or_insert((size, alpha)).clone())
     }
+}
+
+/// A PNG or JPEG of a size that the file may ask memory for.
+fn decoded(bytes: &[u8]) -> ::image::ImageResult<::image::DynamicImage> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(LARGEST_IMAGE);
+    limits.max_image_height = Some(LARGEST_IMAGE);
+    reader.limits(limits);
+    reader.decode()
 }
 
 /// Where a primitive keeps the texture coordinates of its base colour.

@@ -12,7 +12,7 @@ use ::gltf::{Document, Gltf, Node, Semantic, buffer};
 use glam::{Mat4, Vec3};
 
 use super::alpha::Images;
-use super::{malformed, primitive, unit};
+use super::{malformed, named, primitive, unit};
 use crate::scene::mask::Coverage;
 use crate::scene::{Camera, Light, Scene, SceneError};
 
@@ -86,8 +86,13 @@ fn buffers(
             };
             let error =
                 |what: String| SceneError::Buffer { path: path.into(), uri: uri.into(), what };
-            let data = buffer::Data::from_source_and_blob(buffer.source(), folder, &mut blob)
-                .map_err(|e| error(e.to_string()))?;
+            let mut data = match buffer.source() {
+                buffer::Source::Uri(uri) => named::of_uri(uri, folder).map_err(error)?,
+                buffer::Source::Bin => blob.take().ok_or_else(|| error("there is none".into()))?,
+            };
+            // lengths that count the padding of a multiple of 4 are common
+            data.resize(data.len().next_multiple_of(4), 0);
+            let data = buffer::Data(data);
             if data.len() < buffer.length() {
                 let (is, wants) = (data.len(), buffer.length());
                 return Err(error(format!("it has {is} bytes of {wants}")));

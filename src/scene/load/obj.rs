@@ -8,7 +8,7 @@ use earcut::{Earcut, deviation, utils3d::project3d_to_2d};
 use glam::Vec3;
 use tobj::{LoadOptions, MTLLoadResult, Material, Model};
 
-use super::{Corner, Draft, albedo, malformed};
+use super::{Corner, Draft, albedo, malformed, named};
 use crate::scene::{Scene, SceneError};
 
 /// Of faces without a material: a light grey.
@@ -113,7 +113,7 @@ fn libraries(folder: &Path, names: &str, warnings: &mut Vec<String>) -> MTLLoadR
     };
     let mut text = String::new();
     for name in files {
-        match std::fs::read(folder.join(name)) {
+        match named::read(&folder.join(name)) {
             Ok(bytes) => text += &statements(&clean(&bytes), &["newmtl", "Kd"]),
             Err(error) => warn(name, &error),
         }

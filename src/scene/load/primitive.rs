@@ -123,6 +123,10 @@ fn check(
         "have the length 0"
     } else if accessor.view().is_none() {
         "have no buffer view"
+    } else if accessor.view().is_some_and(|view| accessor.count() > view.length()) {
+        // each takes a byte at least; the crate's reader of sparse ones reserves as many as it is
+        // told, and its arithmetic wraps
+        return Err(outside(what));
     } else {
         return Ok(());
     };
