@@ -94,7 +94,8 @@ fn dpsm_kernel(p: vec3<f32>, tangent: f32) -> DpsmKernel {
 /// The disk of a cone in its hemisphere's coordinates, centre and radius: with k = 1 / cos of the
 /// half-angle, centre k xy / (k |z| + |p|) and radius tangent |p| / (k |z| + |p|).
 ///
-/// Domain: as dpsm_kernel. Bound: 18 eps relative, centre and radius.
+/// Domain: as dpsm_kernel. Bound: 18 eps relative, centre and radius, results below 2^-93 counted as
+/// 2^-93.
 fn dpsm_kernel_disk(p: vec3<f32>, tangent: f32) -> vec3<f32> {
     let k = sqrt(1.0 + tangent * tangent);
     let l = length(p);

@@ -170,6 +170,16 @@ pub fn of(function: &str) -> Vec<Case> {
     cases.0
 }
 
+/// The worst inputs that searches found, a function's name and its words' bits each: regression
+/// cases. `tools/accuracy --write` writes them.
+pub fn worst() -> impl Iterator<Item = (&'static str, Vec<u32>)> {
+    include_str!("cases/worst.txt").lines().filter_map(|line| {
+        let mut parts = line.split_whitespace();
+        let function = parts.next()?;
+        Some((function, parts.filter_map(|bits| u32::from_str_radix(bits, 16).ok()).collect()))
+    })
+}
+
 /// Every function with its cases, in the ports' order.
 pub fn all() -> impl Iterator<Item = (&'static str, Vec<Case>)> {
     PORTS.iter().map(|(_, function)| (*function, of(function)))

@@ -117,7 +117,8 @@ const STACK: usize = 256 << 20;
 const DEEPEST: usize = 2000;
 
 /// Declarations of a text. naga follows them from use to use, one inside the other; without
-/// optimisation that takes below 840 bytes for each (docs/fuzzing.md), a third of the stack for all.
+/// optimisation that takes 840 bytes at most for each (docs/fuzzing.md), a third of the stack for
+/// all.
 const MOST_DECLARATIONS: usize = 100_000;
 
 /// Parses and validates a linked text by all of naga's rules.

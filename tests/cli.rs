@@ -297,13 +297,37 @@ fn eval_compares_adapter_port_and_reference() {
     let lines: Vec<_> = stdout.lines().collect();
     assert_eq!(
         lines[0],
-        "record,component,adapter,port_f32,reference_f64,floats_adapter_port,ulp_port_reference"
+        "record,component,adapter,port_f32,reference_f64,floats_adapter_port,\
+         ulp_port_reference,share_of_bound"
     );
-    assert_eq!(lines[1], "1,x,,0.6,0.6,,0.400");
-    assert_eq!(lines[3], "2,x,,33554432,33554432,,0.000");
+    // 0.6 is off by 0.4 ULP of 2^-24, eps of 1, and 9.5 eps of 0.6 are allowed
+    assert_eq!(lines[1], "1,x,,0.6,0.6,,0.400,0.035");
+    assert_eq!(lines[3], "2,x,,33554432,33554432,,0.000,0.000");
     assert_eq!(lines.len(), 5);
     let output = dpsm(&folder, &["eval", "dpsm_lookup", "--adapter", "cpu"]);
     assert!(text(&output.stdout).contains("back pole"), "hard cases are the default input");
+}
+
+#[test]
+fn eval_searches_a_function_or_all_and_says_how_close_the_bound_is() {
+    let folder = folder("eval-search");
+    let search = |extra: &[&str]| {
+        let arguments = [&["eval", "--exhaustive", "--points", "500"], extra].concat();
+        let output = dpsm(&folder, &arguments);
+        text(&output.stdout).lines().map(String::from).collect::<Vec<_>>()
+    };
+    let lines = search(&["dpsm_project"]);
+    assert!(lines[0].starts_with("function,points,unit,error_eps,bound_eps,share,"));
+    assert_eq!(lines.len(), 2);
+    let fields: Vec<_> = lines[1].split(',').collect();
+    let number = |k: usize| fields[k].parse::<f64>().unwrap();
+    assert_eq!((fields[0], fields[2]), ("dpsm_project", "relative"));
+    assert!(number(1) >= 500.0 && number(3) > 0.0 && number(5) <= 1.0);
+    assert_eq!(fields[12].split(' ').count(), 3, "the worst input's bits");
+    assert_eq!(search(&[]).len(), 1 + dpsm::scalar::ports::PORTS.len());
+    refused("eval-search-name", &["eval", "dpsm_projct", "--exhaustive"], &["`dpsm_project`"]);
+    refused("eval-no-name", &["eval"], &["FUNCTION"]);
+    refused("eval-no-points", &["eval", "--exhaustive", "--points", "0"], &["--points"]);
 }
 
 #[test]

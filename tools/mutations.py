@@ -831,6 +831,8 @@ MUTATIONS = [
      "scene", "named_files::sparse_accessors_of_more_elements_than_bytes_lie_outside_their_buffer"),
     ("src/scene/load/alpha.rs", "limits.max_image_width = Some(LARGEST_IMAGE);", "",
      "scene", "named_files::images_beyond_the_largest_texture_are_refused"),
+    ("src/scene/load/alpha.rs", "match texels > MOST_TEXELS {", "match texels > 2 * MOST_TEXELS {",
+     "scene", "named_files::masks_of_more_texels_in_all_than_sixteen_of_the_largest_are_refused"),
     ("src/scene/load/alpha.rs", "return Ok(known.clone());", "return Ok((known.0, known.1.iter().copied().collect()));",
      "scene", "named_files::meshes_of_one_image_share_its_alphas"),
     ("src/validate.rs", "declarations > MOST_DECLARATIONS", "declarations > 2 * MOST_DECLARATIONS",

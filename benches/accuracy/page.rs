@@ -13,7 +13,7 @@ use super::Row;
 /// The largest share of the bound on any implementation.
 fn most(row: &Row) -> f64 {
     let others = row.others.iter().flatten().map(|stats| stats.worst.share());
-    others.fold(row.port.worst.share(), f64::max)
+    others.fold(row.port.worst.share().max(row.loose.worst.share()), f64::max)
 }
 
 /// The largest error in eps, as a share of the interval, or nothing where there is none.
@@ -39,10 +39,11 @@ pub fn line(row: &Row) -> String {
     let others: String =
         row.others.iter().map(|stats| format!("{:>8}", largest(row, stats.as_ref()))).collect();
     format!(
-        "{:<34}{:>10}{:>9}{:>8}{others}{:>8.2}",
+        "{:<34}{:>10}{:>9}{:>8}{:>8}{others}{:>8.2}",
         row.judge.bound.function,
         row.port.points,
         bound(row),
+        largest(row, Some(&row.loose)),
         largest(row, Some(&row.port)),
         1.0 - most(row)
     )
@@ -103,7 +104,7 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
             module = bound_of.module;
             let _ = write!(
                 text,
-                "\n## [{module}]({page}.md)\n\n| function | bound | unit | WGSL allows | port |{columns} slack | 99% | mean | rounded | other | open | points | shares |\n|---|---|---|---|---|{rules}---|---|---|---|---|---|---|---|\n",
+                "\n## [{module}]({page}.md)\n\n| function | bound | unit | intervals | any driver | port |{columns} slack | 99% | mean | rounded | other | open | points | shares |\n|---|---|---|---|---|---|{rules}---|---|---|---|---|---|---|---|\n",
                 page = page(module)
             );
         }
@@ -118,9 +119,10 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
         };
         let _ = writeln!(
             text,
-            "| `{}` | {} | {unit} | {allowed} | {} |{others} {:.2} | {:.2} | {:.3} | {:.1}% | {} | {} | {} | ![]({}) |",
+            "| `{}` | {} | {unit} | {allowed} | {} | {} |{others} {:.2} | {:.2} | {:.3} | {:.1}% | {} | {} | {} | ![]({}) |",
             bound_of.function,
             bound(row),
+            largest(row, Some(&row.loose)),
             largest(row, Some(&row.port)),
             1.0 - most(row),
             row.port.percentile(),
@@ -131,8 +133,8 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
             row.port.points,
             format_args!("pictures/accuracy/{}.svg", bound_of.function),
         );
-        if !row.port.input.is_empty() {
-            let _ = writeln!(worst, "{} {}", bound_of.function, hex(&row.port.input));
+        for input in [&row.port.input, &row.loose.input].into_iter().filter(|i| !i.is_empty()) {
+            let _ = writeln!(worst, "{} {}", bound_of.function, hex(input));
         }
     }
     text.push_str("\n## Domains, bounds and worst inputs\n\nThe text is the WGSL function's own comment; the input is the port's worst, the bits of its words in hexadecimal.\n\n");

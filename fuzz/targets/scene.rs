@@ -1,7 +1,8 @@
 //! Files of scenes: the first byte says which kind, the rest is the file; `.mtl` of an OBJ follows
-//! it after a NUL.
+//! it after a NUL. Or the rest alters a good file.
 #![no_main]
 
+mod altered;
 mod common;
 
 use std::fs;
@@ -24,6 +25,7 @@ fuzz_target!(init: common::keep_panics(), |bytes: &[u8]| {
 });
 
 fn run(kind: u8, file: &[u8]) {
+    let altered = if kind == b'a' { altered::glb(file) } else { Vec::new() };
     let (name, bytes) = match kind {
         b'o' => {
             let mut parts = file.splitn(2, |byte| *byte == 0);
@@ -33,6 +35,7 @@ fn run(kind: u8, file: &[u8]) {
         }
         b't' => ("a.gltf", file),
         b'b' => ("a.glb", file),
+        b'a' => ("a.glb", altered.as_slice()),
         _ => return,
     };
     let path = FOLDER.join(name);

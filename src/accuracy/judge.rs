@@ -1,10 +1,14 @@
 //! Is an answer one that the specification allows, and how close to the bound is it?
 
-use crate::reflect::Signature;
-use crate::scalar::bounds::{Bound, Error, number};
+use super::loose::Loose;
+use crate::reflect::{Component, Kind, Signature};
+use crate::scalar::bounds::{Bound, Error, Unit, number};
 use crate::scalar::float::Float;
 use crate::scalar::interval::{Interval, answers};
 use crate::scalar::ports::{self, Port, Word};
+
+/// Room for the longest record, 46 words of `dpsm_triangle_fragment`.
+const MOST_WORDS: usize = 64;
 
 /// What an answer is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +43,8 @@ pub struct Judge {
     pub signature: Signature,
     /// The port that answers as a driver does that rounds to nearest.
     pub port: Port<f32>,
+    /// The port as any driver may run it.
+    pub loose: Port<Loose>,
     exact: Port<f64>,
     interval: Port<Interval>,
 }
@@ -51,53 +57,69 @@ impl Judge {
             bound: Bound::of(function)?,
             signature: Signature::of(&validated.module, function).ok()?,
             port: ports::find(function)?,
+            loose: ports::find(function)?,
             exact: ports::find(function)?,
             interval: ports::find(function)?,
         })
     }
 
+    /// A record from its words' bits; `None` for too few or too many.
+    pub fn record(&self, bits: &[u32]) -> Option<Vec<Word<f32>>> {
+        let inputs = self.signature.inputs();
+        let word = |(component, &bits): (&Component, &u32)| match component.kind {
+            Kind::Float => Word::Float(f32::from_bits(bits)),
+            _ => Word::Integer(bits),
+        };
+        (inputs.len() == bits.len()).then(|| inputs.iter().zip(bits).map(word).collect())
+    }
+
     /// True where a record lies in the function's domain. Subnormal numbers never do: they may
     /// count as 0.
     pub fn inside(&self, record: &[Word<f32>]) -> bool {
-        self.input(record).is_some()
-    }
-
-    /// A record of the domain as numbers.
-    fn input(&self, record: &[Word<f32>]) -> Option<Vec<f64>> {
         let usable = |word: &Word<f32>| match word {
             Word::Float(x) => *x == 0.0 || x.is_normal(),
             Word::Integer(_) => true,
         };
-        let input = record.iter().all(usable).then(|| numbers(record))?;
-        (self.bound.inside)(&input).then_some(input)
+        let mut input = [0.0; MOST_WORDS];
+        record.iter().all(usable) && (self.bound.inside)(numbers(record, &mut input))
     }
 
     /// Judges an answer; `None` for a record outside the domain.
     pub fn judge(&self, record: &[Word<f32>], answer: &[Word<f32>]) -> Option<Judged> {
-        let input = self.input(record)?;
-        let actual = numbers(answer);
-        let wide: Vec<_> = record.iter().map(|word| map(*word, f64::from)).collect();
+        if !self.inside(record) {
+            return None;
+        }
+        if self.bound.unit == Unit::Interval {
+            return Some(self.judge_by_interval(record, answer));
+        }
+        let (mut input, mut actual, mut numbers_of_exact) =
+            ([0.0; MOST_WORDS], [0.0; MOST_WORDS], [0.0; MOST_WORDS]);
+        let input = numbers(record, &mut input);
+        let actual = numbers(answer, &mut actual);
+        let mut wide = [Word::Integer(0); MOST_WORDS];
+        for (wide, word) in wide.iter_mut().zip(record) {
+            *wide = map(*word, f64::from);
+        }
         let mut exact = Vec::with_capacity(answer.len());
-        if (self.exact)(&wide, &mut exact).is_some() && same_integers(answer, &exact) {
-            let exact = numbers(&exact);
-            if let Some(error) = self.bound.error(&input, &exact, &actual)
+        if (self.exact)(&wide[..record.len()], &mut exact).is_some()
+            && same_integers(answer, &exact)
+        {
+            let exact = numbers(&exact, &mut numbers_of_exact);
+            if let Some(error) = self.bound.error(input, exact, actual)
                 && error.share() <= 1.0
             {
-                let rounded = rounded(&actual, &exact);
+                let rounded = rounded(actual, exact);
                 return Some(Judged { verdict: Verdict::Within, error, rounded });
             }
         }
-        Some(self.judge_by_interval(&input, record, answer))
+        Some(self.judge_by_interval(record, answer))
     }
 
     /// Judges an answer by the interval of the port, and by the bound for each way to decide.
-    fn judge_by_interval(
-        &self,
-        input: &[f64],
-        record: &[Word<f32>],
-        answer: &[Word<f32>],
-    ) -> Judged {
-        let actual = numbers(answer);
+    fn judge_by_interval(&self, record: &[Word<f32>], answer: &[Word<f32>]) -> Judged {
+        let (mut input, mut actual) = ([0.0; MOST_WORDS], [0.0; MOST_WORDS]);
+        let input = numbers(record, &mut input);
+        let actual = numbers(answer, &mut actual);
         let words: Vec<_> = record.iter().map(|word| map(*word, Interval::exact)).collect();
         let mut way = 0;
         let mut judged =
@@ -112,15 +134,16 @@ impl Judge {
             if !same_integers(answer, &result) || !holds(&result, answer) {
                 return false;
             }
-            let exact = numbers(&result);
+            let mut exact = [0.0; MOST_WORDS];
+            let exact = numbers(&result, &mut exact);
             let open = |word: &Word<Interval>| matches!(word, Word::Float(x) if x.is_anything());
             if result.iter().any(open) {
                 judged.verdict = Verdict::Open;
                 return true;
             }
-            let error = self.bound.error(input, &exact, &actual);
-            judged.error = error.unwrap_or_else(|| off_middle(&result, &actual));
-            judged.rounded = rounded(&actual, &exact);
+            let error = self.bound.error(input, exact, actual);
+            judged.error = error.unwrap_or_else(|| off_middle(&result, actual));
+            judged.rounded = rounded(actual, exact);
             let fits = judged.error.share() <= 1.0;
             if fits {
                 judged.verdict = if way == 1 { Verdict::Within } else { Verdict::Decision };
@@ -136,7 +159,11 @@ impl Judge {
     /// The largest share of the closed bound that the interval takes, the exact decision assumed;
     /// `None` without a closed bound, or where the interval holds everything.
     pub fn allowed(&self, record: &[Word<f32>]) -> Option<Error> {
-        let input = self.input(record)?;
+        if !self.inside(record) {
+            return None;
+        }
+        let mut input = [0.0; MOST_WORDS];
+        let input = numbers(record, &mut input);
         let words: Vec<_> = record.iter().map(|word| map(*word, Interval::exact)).collect();
         let mut worst = None;
         let port = || {
@@ -157,7 +184,7 @@ impl Judge {
             let exact = end(|x| x.value);
             let ends = [end(|x| x.low), end(|x| x.high)];
             if ends.iter().flatten().all(|x| x.is_finite()) {
-                let errors = ends.map(|end| self.bound.error(&input, &exact, &end));
+                let errors = ends.map(|end| self.bound.error(input, &exact, &end));
                 worst = errors.into_iter().flatten().max_by(|a, b| a.share().total_cmp(&b.share()));
             }
             true
@@ -166,8 +193,12 @@ impl Judge {
     }
 }
 
-fn numbers<T: Float>(words: &[Word<T>]) -> Vec<f64> {
-    words.iter().map(|word| number(*word)).collect()
+/// The words as numbers.
+fn numbers<'a, T: Float>(words: &[Word<T>], room: &'a mut [f64; MOST_WORDS]) -> &'a [f64] {
+    for (number_of, word) in room.iter_mut().zip(words) {
+        *number_of = number(*word);
+    }
+    &room[..words.len()]
 }
 
 /// True where every float is the nearest one.

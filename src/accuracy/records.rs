@@ -21,6 +21,8 @@ pub struct Records {
     centred: bool,
     /// Its index counts taps.
     counted: bool,
+    /// It has to do with triangles or edges.
+    cornered: bool,
 }
 
 impl Records {
@@ -34,13 +36,20 @@ impl Records {
             arguments: signature.arguments.iter().map(kinds).collect(),
             centred: signature.arguments.iter().any(|(name, _)| named(name)),
             counted: signature.arguments.iter().any(|(name, _)| name == "count"),
+            cornered: signature
+                .arguments
+                .iter()
+                .any(|(name, _)| ["a", "b", "triangle", "part"].contains(&name.as_str())),
         }
     }
 
     /// One record as the function is used, or where `wild` mostly any finite bits at all.
     pub fn record(&self, wild: bool, rng: &mut Rng) -> Vec<Word<f32>> {
         let mut words = Vec::with_capacity(64);
-        let [corner_a, corner_b, corner_c] = corners(rng);
+        let [corner_a, corner_b, corner_c] = match self.cornered {
+            true => corners(rng),
+            false => [Vec3::new(0.0, 0.0, 0.0); 3],
+        };
         let disk_a = disk(rng);
         let near = spread(rng, -10, 4).abs();
         let map = [512.0, 1.0, 3.0, 16384.0][rng.usize(..4)];
@@ -81,7 +90,9 @@ impl Records {
                 ("st", 2) => Vec2::new(rng.f32(), rng.f32()).write(&mut words),
                 ("depth", 1) => rng.f32().write(&mut words),
                 // seldom below 0: nothing is promised there
-                ("l" | "z" | "limit" | "rise" | "height" | "pitch" | "farthest", 1)
+                // of a cube's slack, near is the light's
+                ("z", 1) => spread(rng, 0, 12).abs().write(&mut words),
+                ("l" | "limit" | "rise" | "height" | "pitch" | "farthest", 1)
                 | ("distance" | "blocker" | "radius" | "tangent" | "longest_edge", 1) => {
                     spread(rng, -24, 10).abs().write(&mut words);
                 }

@@ -6,15 +6,19 @@ use fastrand::Rng;
 use rayon::prelude::*;
 
 use super::judge::{Judge, Judged, Verdict};
+use super::loose::loosely;
 use super::records::Records;
 use crate::cases;
 use crate::reflect::{Component, Kind};
-use crate::scalar::bounds::Error;
+use crate::scalar::bounds::{Error, Unit};
 use crate::scalar::ports::Word;
 use crate::ulp::ulps_apart;
 
 /// Inputs that are judged at once.
 pub const CHUNK: usize = 1 << 12;
+
+/// One in so many results that are the port's own is judged where the interval is the bound.
+const SAMPLE: usize = 16;
 
 /// Bins of the histogram of shares of the bound, the last for what is above it.
 pub const BINS: usize = 21;
@@ -38,6 +42,8 @@ pub struct Stats {
     pub input: Vec<u32>,
     /// The first input outside the bound.
     pub broken_input: Vec<u32>,
+    /// Inputs of the domain whose answers were compared with the f32 port's.
+    pub compared: u64,
     /// Answers with other bits than the f32 port's.
     pub differ: u64,
     /// The same for inputs outside the domain, which count nowhere else.
@@ -88,6 +94,7 @@ impl Stats {
         self.open += other.open;
         self.broken += other.broken;
         self.rounded += other.rounded;
+        self.compared += other.compared;
         self.differ += other.differ;
         self.differ_outside += other.differ_outside;
         self.apart = self.apart.max(other.apart);
@@ -107,27 +114,14 @@ impl Stats {
         self
     }
 
-    /// Counts an answer that is not the port's.
-    fn compare(
-        &mut self,
-        record: &[Word<f32>],
-        inside: bool,
-        answer: &[Word<f32>],
-        port: &[Word<f32>],
-    ) {
-        let apart = |(a, b): (&Word<f32>, &Word<f32>)| match (*a, *b) {
-            // the sign of zero may be ignored
-            (Word::Float(a), Word::Float(b)) if a == b => 0,
-            (Word::Float(a), Word::Float(b)) if a.is_nan() && b.is_nan() => 0,
-            (Word::Float(a), Word::Float(b)) => ulps_apart(a, b).max(1),
-            (a, b) => bits(a).abs_diff(bits(b)),
-        };
-        let most = answer.iter().zip(port).map(apart).max().unwrap_or_default();
-        if most > 0 && !inside {
+    /// Counts an answer, so many floats from the port's.
+    fn compare(&mut self, record: &[Word<f32>], inside: bool, apart: u32) {
+        self.compared += u64::from(inside);
+        if apart > 0 && !inside {
             self.differ_outside += 1;
-        } else if most > 0 {
+        } else if apart > 0 {
             self.differ += 1;
-            self.apart = self.apart.max(most);
+            self.apart = self.apart.max(apart);
             if self.differ_input.is_empty() {
                 self.differ_input = record.iter().map(|word| bits(*word)).collect();
             }
@@ -229,9 +223,29 @@ fn edge(rng: &mut Rng) -> f32 {
     }
 }
 
-/// Searches the port's errors over at least `points` inputs of the domain, or until as many
-/// thirty-two times were tried; `progress` is told how many more there are now and then.
+/// Searches the port's errors, as [`search_by`] does.
 pub fn search(judge: &Judge, points: u64, progress: impl Fn(u64) + Sync) -> Stats {
+    let port = |record: &[Word<f32>], _| {
+        let mut answer = Vec::with_capacity(8);
+        (judge.port)(record, &mut answer).map(|()| answer)
+    };
+    search_by(judge, points, port, progress)
+}
+
+/// Searches the errors of any driver that follows WGSL's rules, as [`search_by`] does.
+pub fn search_loosely(judge: &Judge, points: u64, progress: impl Fn(u64) + Sync) -> Stats {
+    search_by(judge, points, |record, seed| loosely(judge.loose, record, seed), progress)
+}
+
+/// Searches errors over at least `points` inputs of the domain, or until as many
+/// thirty-two times were tried; `answer` gets a record and its number, `progress` is told how many
+/// more there are now and then.
+fn search_by(
+    judge: &Judge,
+    points: u64,
+    answer: impl Fn(&[Word<f32>], u64) -> Option<Vec<Word<f32>>> + Sync,
+    progress: impl Fn(u64) + Sync,
+) -> Stats {
     let inputs = Inputs::of(judge);
     let done = AtomicU64::new(0);
     let chunks = points.div_ceil(CHUNK as u64) * 32;
@@ -242,11 +256,9 @@ pub fn search(judge: &Judge, points: u64, progress: impl Fn(u64) + Sync) -> Stat
                 return Stats::default();
             }
             let mut stats = Stats::default();
-            let mut answer = Vec::new();
-            for record in inputs.chunk(chunk) {
-                answer.clear();
-                if (judge.port)(&record, &mut answer).is_some() {
-                    stats.note(&record, judge.judge(&record, &answer));
+            for (place, record) in inputs.chunk(chunk).iter().enumerate() {
+                if let Some(answer) = answer(record, chunk * CHUNK as u64 + place as u64) {
+                    stats.note(record, judge.judge(record, &answer));
                 }
             }
             done.fetch_add(stats.points, Ordering::Relaxed);
@@ -266,22 +278,38 @@ pub fn judge_all(judge: &Judge, records: &[Vec<Word<f32>>], answers: &[u32]) -> 
         .map(|(records, answers)| {
             let mut stats = Stats::default();
             let mut port = Vec::new();
-            for (record, answer) in records.iter().zip(answers.chunks(size)) {
+            for (place, (record, answer)) in records.iter().zip(answers.chunks(size)).enumerate() {
                 let word = |(component, &bits): (&Component, &u32)| match component.kind {
                     Kind::Float => Word::Float(f32::from_bits(bits)),
                     _ => Word::Integer(bits),
                 };
                 let answer: Vec<_> = outputs.iter().zip(answer).map(word).collect();
-                let judged = judge.judge(record, &answer);
                 port.clear();
-                if (judge.port)(record, &mut port).is_some() {
-                    stats.compare(record, judged.is_some(), &answer, &port);
+                let ran = (judge.port)(record, &mut port).is_some();
+                let inside = judge.inside(record);
+                let apart = if ran { apart(&answer, &port) } else { 0 };
+                stats.compare(record, inside, apart);
+                // rounding to nearest lies in every interval (tests/interval.rs): a sample is enough
+                let sampled = judge.bound.unit == Unit::Interval && apart == 0;
+                if inside && (!sampled || place % SAMPLE == 0) {
+                    stats.note(record, judge.judge(record, &answer));
                 }
-                stats.note(record, judged);
             }
             stats
         })
         .reduce(Stats::default, Stats::and)
+}
+
+/// The most floats that two results are apart in a word.
+fn apart(answer: &[Word<f32>], port: &[Word<f32>]) -> u32 {
+    let words = answer.iter().zip(port).map(|(a, b)| match (*a, *b) {
+        // the sign of zero may be ignored
+        (Word::Float(a), Word::Float(b)) if a == b => 0,
+        (Word::Float(a), Word::Float(b)) if a.is_nan() && b.is_nan() => 0,
+        (Word::Float(a), Word::Float(b)) => ulps_apart(a, b).max(1),
+        (a, b) => bits(a).abs_diff(bits(b)),
+    });
+    words.max().unwrap_or_default()
 }
 
 /// A word's bits.

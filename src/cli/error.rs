@@ -57,6 +57,9 @@ pub enum CliError {
     /// The adapter.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// Results outside their bounds.
+    #[error("outside the bound: {0}; the table has an input of each")]
+    Outside(String),
     /// Maps that cannot be encoded.
     #[error("cannot encode {}: {message}", path.display())]
     Exr {
@@ -92,6 +95,7 @@ impl CliError {
                 | GpuError::Hung { .. },
             )
             | CliError::Encode { .. }
+            | CliError::Outside(_)
             | CliError::Exr { .. } => 1,
             _ => 2,
         }

@@ -1,8 +1,10 @@
-//! `dpsm eval`: one function on the adapter, in the f32 port and in the f64 reference.
+//! `dpsm eval`: one function on the adapter, in the f32 port and in the f64 reference; or a search
+//! for its largest error.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use dpsm::accuracy::{Judge, Verdict, bits};
 use dpsm::cases;
 use dpsm::gpu::{Device, Evaluator, GpuError};
 use dpsm::reflect::{Component, Kind, Signature};
@@ -11,21 +13,36 @@ use dpsm::ulp::{ulps_apart, ulps_off};
 
 use super::output::write_or_print;
 use super::table::Table;
-use super::{AdapterChoice, CliError};
+use super::{AdapterChoice, CliError, search};
 
 /// Evaluate one function: on the adapter, by the f32 port, by the f64 reference
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Writes CSV, one line for each component of each result: adapter and port, the f64 reference, how
-many floats the adapter is from the port, and how many ULP the port is from the reference.
+many floats the adapter is from the port, how many ULP the port is from the reference, and the
+share of the function's bound that the adapter's result takes (the port's where there is none);
+`open` where WGSL promises nothing, empty outside the function's domain.
+
+With --exhaustive: one line a function, the port's largest error over so many inputs of its domain,
+random, spaced evenly over all floats, and at edges; above the bound the exit code is 1.
 
 Examples:
+  dpsm eval --exhaustive -o errors.csv          (every function; hours)
+  dpsm eval dpsm_project --exhaustive --points 1000000
   dpsm eval dpsm_project
   dpsm eval dpsm_project --input points.csv     (header p.x,p.y,p.z)
   dpsm eval dpsm_depth --input depths.csv -o errors.csv")]
 pub struct EvalArguments {
-    /// The function's name
-    function: String,
+    /// The function's name; with --exhaustive by default every function
+    #[arg(required_unless_present = "exhaustive")]
+    function: Option<String>,
+    /// Search the port's errors over the whole domain instead
+    #[arg(long, conflicts_with = "input")]
+    exhaustive: bool,
+    /// Inputs of each function in a search
+    #[arg(long, requires = "exhaustive", default_value = "100000000",
+        value_parser = clap::value_parser!(u64).range(1..))]
+    points: u64,
     /// Inputs, one record a line; the header names the arguments' components. By default the
     /// function's named hard cases
     #[arg(long)]
@@ -42,8 +59,12 @@ pub struct Record {
 }
 
 pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), CliError> {
-    let function = arguments.function.as_str();
+    if arguments.exhaustive {
+        let function = arguments.function.as_deref();
+        return search::search(function, arguments.points, arguments.output.as_deref());
+    }
     let (signature, records) = inputs(arguments)?;
+    let function = signature.name.as_str();
     let device = adapter.open()?;
     eprintln!("dpsm: {}", super::describe(device.as_ref()));
     let answers = device.map(|device| on_adapter(&device, function, &records)).transpose()?;
@@ -53,7 +74,7 @@ pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), Cli
 
 /// What is evaluated, and at which records.
 pub fn inputs(arguments: &EvalArguments) -> Result<(Signature, Vec<Record>), CliError> {
-    let function = arguments.function.as_str();
+    let function = arguments.function.as_deref().unwrap_or_default();
     let signature = signature(function)?;
     let inputs = signature.inputs();
     let records = match &arguments.input {
@@ -66,7 +87,7 @@ pub fn inputs(arguments: &EvalArguments) -> Result<(Signature, Vec<Record>), Cli
     Ok((signature, records))
 }
 
-fn signature(function: &str) -> Result<Signature, CliError> {
+pub fn signature(function: &str) -> Result<Signature, CliError> {
     let unsupported = |reason| GpuError::Unsupported { function: function.to_string(), reason };
     let validated = dpsm::validate(&dpsm::link::link_function(function)?)?;
     let signature = Signature::of(&validated.module, function).map_err(unsupported)?;
@@ -78,11 +99,8 @@ fn signature(function: &str) -> Result<Signature, CliError> {
 }
 
 fn on_adapter(device: &Device, function: &str, records: &[Record]) -> Result<Vec<u32>, CliError> {
-    let bits = |word: &Word<f32>| match *word {
-        Word::Float(value) => value.to_bits(),
-        Word::Integer(value) => value,
-    };
-    let words: Vec<u32> = records.iter().flat_map(|record| record.words.iter().map(bits)).collect();
+    let words: Vec<u32> =
+        records.iter().flat_map(|record| record.words.iter().map(|&word| bits(word))).collect();
     Ok(Evaluator::new(device, function)?.run(&words, None)?.words)
 }
 
@@ -92,6 +110,7 @@ fn table(
     answers: Option<&[u32]>,
 ) -> Result<String, CliError> {
     let outputs = signature.outputs();
+    let judge = Judge::of(&signature.name);
     let mut writer = csv::Writer::from_writer(Vec::new());
     let broken = |error: csv::Error| CliError::Usage(format!("cannot write the table: {error}"));
     writer
@@ -103,12 +122,24 @@ fn table(
             "reference_f64",
             "floats_adapter_port",
             "ulp_port_reference",
+            "share_of_bound",
         ])
         .map_err(broken)?;
     for (index, record) in records.iter().enumerate() {
         let port = call(signature, &record.words)?;
         let exact: Vec<_> = record.words.iter().map(widen).collect();
         let reference = call(signature, &exact)?;
+        let word = |(k, component): (usize, &Component)| match (answers, component.kind) {
+            (None, _) => port[k],
+            (Some(all), Kind::Float) => Word::Float(f32::from_bits(all[index * outputs.len() + k])),
+            (Some(all), _) => Word::Integer(all[index * outputs.len() + k]),
+        };
+        let answer: Vec<_> = outputs.iter().enumerate().map(word).collect();
+        let judged = judge.as_ref().and_then(|judge| judge.judge(&record.words, &answer));
+        let share = judged.map_or(String::new(), |judged| match judged.verdict {
+            Verdict::Open => "open".into(),
+            _ => format!("{:.3}", judged.error.share()),
+        });
         for (k, component) in outputs.iter().enumerate() {
             let adapter = answers.map(|answers| answers[index * outputs.len() + k]);
             let name = match component.path.trim_start_matches('.') {
@@ -138,7 +169,7 @@ fn table(
             };
             let [adapter, port, reference, apart, off] = &row;
             writer
-                .write_record([&record.name, name, adapter, port, reference, apart, off])
+                .write_record([&record.name, name, adapter, port, reference, apart, off, &share])
                 .map_err(broken)?;
         }
     }

@@ -9,6 +9,7 @@ mod measure;
 mod output;
 mod probe;
 mod render;
+mod search;
 mod setup;
 mod table;
 mod text;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::gltf_files::{NODE, STRIP, glb, glb_with, json};
-use crate::masks::{File, MASKED, buffer, masked, png};
+use crate::masks::{EMBEDDED, File, MASKED, buffer, masked, png};
 use crate::{assert_valid, error, file, read};
 
 #[test]
@@ -57,6 +57,46 @@ fn images_beyond_the_largest_texture_are_refused() {
     assert!(masked(&wide(8192)).read("wide.glb").meshes[0].mask.is_some());
     let message = masked(&wide(8193)).error("wider.glb");
     assert!(message.contains("the image `0` for the mask of mesh `x`: "), "{message}");
+}
+
+/// The start of a PNG of 8192 x 8192 texels, enough to tell its size.
+fn huge() -> Vec<u8> {
+    let mut bytes = png(2, &[255, 0, 0, 255]);
+    bytes[16..24].copy_from_slice(&[0, 0, 32, 0, 0, 0, 32, 0]);
+    // the checksum of PNG's second edition, annex D, a bit at a time
+    let crc = bytes[12..29].iter().fold(u32::MAX, |crc, &byte| {
+        let step = |crc: u32, _| (crc >> 1) ^ if crc & 1 == 1 { 0xedb8_8320 } else { 0 };
+        (0..8).fold(crc ^ u32::from(byte), step)
+    });
+    bytes[29..33].copy_from_slice(&(!crc).to_be_bytes());
+    bytes
+}
+
+#[test]
+fn masks_of_more_texels_in_all_than_sixteen_of_the_largest_are_refused() {
+    let huge = huge();
+    let with = |count: usize| {
+        let image = format!(r#""images": [{{{EMBEDDED}}}"#);
+        let texture = r#""textures": [{"source": 0, "sampler": 0}"#;
+        let material = format!(r#""materials": [{{{MASKED}}}"#);
+        let mut json = masked(&huge).json();
+        for i in 1..count {
+            let more = |json: &str, first: &str, another: &str| {
+                assert!(json.contains(first), "{first}");
+                json.replace(first, &format!("{first}, {another}"))
+            };
+            json = more(&json, &image, &format!("{{{EMBEDDED}}}"));
+            json = more(&json, texture, &format!(r#"{{"source": {i}, "sampler": 0}}"#));
+            let other = MASKED.replace("\"index\": 0", &format!("\"index\": {}", count - i));
+            json = more(&json, &material, &format!("{{{other}}}"));
+        }
+        error(&file("texels.glb", glb_with(&json, &buffer(&huge))))
+    };
+    // there is no more of the image than its start, which is said where it is needed
+    assert!(with(16).contains("the image `0` for the mask of mesh `x`: "), "{}", with(16));
+    let message = with(17);
+    let what = "its masks have 1140850688 texels, and may have 1073741824";
+    assert!(message.contains(what), "{message}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::{Bound, EPS, Error};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::kernel::{DpsmKernel, dpsm_kernel_tap};
 
-/// Below it the last bits of a relative error may be those of subnormal numbers: 2^-126 / eps.
+/// Scales below 2^-126 / eps count as that: what is flushed is eps of it.
 const FLOOR: f64 = 1.0 / (1u128 << 103) as f64;
 
 /// 2^n.
@@ -15,16 +15,13 @@ fn two(n: i32) -> f64 {
 
 /// The largest error of the words in eps of a scale.
 fn absolute(r: &[f64], a: &[f64], bound: f64, scale: f64) -> Error {
-    let each = r.iter().zip(a).map(|(r, a)| {
-        let off = (a - r).abs();
-        // what is flushed is no error
-        Error { eps: if off <= two(-126) { 0.0 } else { off / (EPS * scale) }, bound }
-    });
+    let scale = EPS * scale.max(FLOOR);
+    let each = r.iter().zip(a).map(|(r, a)| Error { eps: (a - r).abs() / scale, bound });
     each.fold(Error { eps: 0.0, bound }, Error::or)
 }
 
 fn relative(r: &[f64], a: &[f64], bound: f64) -> Error {
-    let each = r.iter().zip(a).map(|(r, a)| absolute(&[*r], &[*a], bound, r.abs().max(FLOOR)));
+    let each = r.iter().zip(a).map(|(r, a)| absolute(&[*r], &[*a], bound, r.abs()));
     each.fold(Error { eps: 0.0, bound }, Error::or)
 }
 
@@ -272,7 +269,7 @@ edge {
     dpsm_edge_normal Angle triangle, turned;
     dpsm_edge_sagitta Absolute
         |i| i[0].abs() <= 1.0 && length(&i[1..]) <= 1.0,
-        |i, r, a| absolute(r, a, 5.0, length(&i[1..]).powi(2).max(FLOOR));
+        |i, r, a| absolute(r, a, 5.0, length(&i[1..]).powi(2));
     dpsm_edge_bow Interval |i| triangle(&i[..6]) && light(i, 6).inside(), none;
     dpsm_edge_flat Interval |i| triangle(&i[..6]) && light(i, 6).inside(), none;
     dpsm_edge_terms Absolute
@@ -309,7 +306,7 @@ triangle {
         },
         |i, r, a| {
             let sine = i[0] * i[3] - i[1] * i[2];
-            absolute(r, a, 12.0, (i[4] + i[5]) / (sine * sine))
+            absolute(r, a, 12.0, (i[4] + i[5]).max(FLOOR) / (sine * sine))
         };
     dpsm_triangle_needle Interval any, none;
 }

@@ -1,18 +1,19 @@
 //! What the alpha of glTF materials leaves of their meshes.
 
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::gltf::image::Source;
+use ::gltf::image::{Image, Source};
 use ::gltf::material::{AlphaMode, Material};
 use ::gltf::texture::{Texture, WrappingMode};
-use ::gltf::{Primitive, buffer};
+use ::gltf::{Document, Primitive, buffer};
 use ::image::{ImageReader, Limits};
 use glam::Vec2;
 
-use super::named;
+use super::{malformed, named};
 use crate::scene::SceneError;
 use crate::scene::mask::{Coverage, Mask};
 
@@ -28,6 +29,9 @@ pub(super) struct Images<'a> {
 /// Most texels along a side of a mask's image: a file of a few kilobytes can ask for any number.
 /// As for a texture on every WebGPU adapter.
 const LARGEST_IMAGE: u32 = 8192;
+
+/// Most texels of all masks' images: sixteen of the largest, a byte each.
+const MOST_TEXELS: u64 = 16 * (LARGEST_IMAGE as u64).pow(2);
 
 impl Images<'_> {
     /// What a material leaves of the mesh of that name.
@@ -86,35 +90,66 @@ impl Images<'_> {
             };
             SceneError::Image { path: self.path.into(), image, mesh: mesh.into(), what }
         };
-        let file;
-        let bytes = match image.source() {
-            Source::View { view, .. } => {
-                let (start, length) = (view.offset(), view.length());
-                let whole = buffers.get(view.buffer().index());
-                whole
-                    .and_then(|data| data.get(start..)?.get(..length))
-                    .ok_or_else(|| error("it lies outside its buffer".into()))?
-            }
-            Source::Uri { uri, .. } => {
-                file = named::of_uri(uri, self.path.parent()).map_err(error)?;
-                &file[..]
-            }
-        };
-        let picture = decoded(bytes).map_err(|e| error(e.to_string()))?;
+        let bytes = self.bytes(&image, buffers).map_err(error)?;
+        let reader = reader(&bytes).map_err(|e| error(e.to_string()))?;
+        let picture = reader.decode().map_err(|e| error(e.to_string()))?;
         let size = [picture.width(), picture.height()];
         let alpha: Arc<[u8]> = picture.into_rgba8().pixels().map(|pixel| pixel.0[3]).collect();
         Ok(self.decoded.entry(image.index()).or_insert((size, alpha)).clone())
     }
+
+    /// An image as the file holds it.
+    fn bytes<'b>(
+        &self,
+        image: &Image,
+        buffers: &'b [buffer::Data],
+    ) -> Result<Cow<'b, [u8]>, String> {
+        match image.source() {
+            Source::View { view, .. } => {
+                let (start, length) = (view.offset(), view.length());
+                let whole = buffers.get(view.buffer().index());
+                let bytes = whole.and_then(|data| data.get(start..)?.get(..length));
+                bytes.map(Cow::from).ok_or_else(|| "it lies outside its buffer".into())
+            }
+            Source::Uri { uri, .. } => named::of_uri(uri, self.path.parent()).map(Cow::from),
+        }
+    }
+
+    /// Refuses more texels than a file may ask memory for: masks compress to almost nothing.
+    pub(super) fn check(
+        &self,
+        document: &Document,
+        buffers: &[buffer::Data],
+    ) -> Result<(), SceneError> {
+        let masked = document.materials().filter(|m| m.alpha_mode() == AlphaMode::Mask);
+        let colors = masked.filter_map(|m| m.pbr_metallic_roughness().base_color_texture());
+        let images = colors.map(|info| info.texture().source());
+        let images: BTreeMap<_, _> = images.map(|image| (image.index(), image)).collect();
+        // those that cannot be read are named where a mesh needs them
+        let texels = |image: &Image| {
+            let bytes = self.bytes(image, buffers).ok()?;
+            let (width, height) = reader(&bytes).ok()?.into_dimensions().ok()?;
+            Some(u64::from(width) * u64::from(height))
+        };
+        let texels = images.values().filter_map(texels).fold(0, u64::saturating_add);
+        match texels > MOST_TEXELS {
+            true => {
+                let what = format!("its masks have {texels} texels, and may have {MOST_TEXELS}");
+                Err(malformed(self.path, what))
+            }
+            false => Ok(()),
+        }
+    }
 }
 
-/// A PNG or JPEG of a size that the file may ask memory for.
-fn decoded(bytes: &[u8]) -> ::image::ImageResult<::image::DynamicImage> {
+/// Reads a PNG or JPEG of a size that the file may ask memory for.
+fn reader(bytes: &[u8]) -> std::io::Result<ImageReader<Cursor<&[u8]>>> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(LARGEST_IMAGE);
     limits.max_image_height = Some(LARGEST_IMAGE);
     reader.limits(limits);
-    reader.decode()
+    Ok(reader)
 }
 
 /// Where a primitive keeps the texture coordinates of its base colour.

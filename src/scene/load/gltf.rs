@@ -54,6 +54,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<Strin
         directional: 0,
         dark: 0,
     };
+    reader.images.check(&document, &reader.buffers)?;
     reader.nodes(&document)?;
     let Reader { mesh_nodes, not_triangles, directional, dark, .. } = reader;
     let mut counted = |count: usize, what: &str| {
