@@ -225,3 +225,20 @@ fn comments_of_the_functions_state_the_tables_bounds() {
         }
     }
 }
+
+#[test]
+fn answers_within_the_bound_but_outside_the_interval_are_broken() {
+    let judge = Judge::of("dpsm_depth").unwrap();
+    let record = [0.75_f32, 0.5, 1.0].map(Word::Float);
+    let verdict =
+        |depth: f32| judge.judge_strictly(&record, &[Word::Float(depth)]).unwrap().verdict;
+    let ulp = f32::EPSILON / 4.0;
+    // both differences are exact, the quotient may be 2.5 ULP off, and 4.5 (l + near) eps are allowed
+    assert_eq!(verdict(0.5 + 2.0 * (2.0 * ulp)), Verdict::Within);
+    assert_eq!(verdict(0.5 + 3.0 * (2.0 * ulp)), Verdict::Broken);
+    let loosely = judge.judge(&record, &[Word::Float(0.5 + 3.0 * (2.0 * ulp))]).unwrap();
+    assert_eq!(loosely.verdict, Verdict::Within);
+    assert_eq!(judge.judge(&record, &[Word::Float(0.51)]).unwrap().verdict, Verdict::Broken);
+    // nothing is said outside the domain
+    assert!(judge.judge(&[0.75_f32, 1.0, 0.5].map(Word::Float), &[Word::Float(9.0)]).is_none());
+}

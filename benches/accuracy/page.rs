@@ -49,16 +49,36 @@ pub fn line(row: &Row) -> String {
     )
 }
 
-/// The function's `Domain:` text up to the end of its comment.
-fn promise(row: &Row) -> String {
-    let text = dpsm::module(row.judge.bound.module).map_or("", |module| module.text);
-    let end = text.find(&format!("fn {}(", row.judge.bound.function)).unwrap_or(0);
+/// The function's comment from its domain or bound on.
+fn promise(module: &str, function: &str) -> String {
+    let text = dpsm::module(module).map_or("", |module| module.text);
+    let end = text.find(&format!("fn {function}(")).unwrap_or(0);
     let comment = text[..end].rsplit("\n\n").next().unwrap_or("");
     let lines = comment.lines().map(|line| line.trim_start_matches("///").trim());
     let joined = lines.collect::<Vec<_>>().join(" ");
     let from = ["Domain", "Bound:", "Exact"].iter().filter_map(|word| joined.find(word)).min();
-    joined[from.unwrap_or(0)..].trim().replace('|', "\\|")
+    joined[from.unwrap_or(0)..].trim().to_string()
 }
+
+/// The functions that read textures, which have no row.
+fn samplers(text: &mut String) {
+    text.push_str(SAMPLERS);
+    for module in dpsm::MODULES {
+        let starts = module.text.lines().filter_map(|line| line.strip_prefix("fn "));
+        for function in starts.filter_map(|line| line.split('(').next()) {
+            if dpsm::scalar::bounds::Bound::of(function).is_none() {
+                let _ = writeln!(text, "- `{function}`: {}", promise(module.name, function));
+            }
+        }
+    }
+}
+
+const SAMPLERS: &str = "
+## Functions that read maps
+
+Each tap is a decision: where its lookup reads and what it compares are bounded above, and it is that of exact arithmetic unless these straddle a texel's border or the stored depth. tests/adapter.rs compares the single lookups with their ports on the adapter for a million points in each format, tests/filter the filters, tap by tap.
+
+";
 
 /// A histogram of the shares of the bound, its bars by the logarithm of their counts.
 fn histogram(stats: &Stats) -> String {
@@ -140,7 +160,7 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
     text.push_str("\n## Domains, bounds and worst inputs\n\nThe text is the WGSL function's own comment; the input is the port's worst, the bits of its words in hexadecimal.\n\n");
     for row in rows {
         let function = row.judge.bound.function;
-        let _ = write!(text, "- `{function}`: {}", promise(row));
+        let _ = write!(text, "- `{function}`: {}", promise(row.judge.bound.module, function));
         match row.port.input.is_empty() {
             true => text.push('\n'),
             false => {
@@ -148,9 +168,50 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
             }
         }
     }
+    samplers(&mut text);
+    long_run(&root.join("docs/long-run.csv"), &mut text);
     fs::write(root.join("docs/accuracy.md"), text)?;
     fs::write(root.join("src/cases/worst.txt"), worst)
 }
+
+/// The table of a long search, where there is one.
+fn long_run(path: &Path, text: &mut String) {
+    let Ok(table) = fs::read_to_string(path) else { return };
+    text.push_str(LONG_RUN);
+    for line in table.lines().skip(1) {
+        let fields: Vec<_> = line.split(',').collect();
+        if let [
+            function,
+            points,
+            unit,
+            error,
+            bound,
+            share,
+            mean,
+            most,
+            rounded,
+            other,
+            open,
+            outside,
+            worst,
+        ] = fields[..]
+        {
+            let _ = writeln!(
+                text,
+                "| `{function}` | {points} | {unit} | {error} | {bound} | {share} | {mean} | {most} | {rounded} | {other} | {open} | {outside} | `{worst}` |"
+            );
+        }
+    }
+}
+
+const LONG_RUN: &str = "
+## The long run
+
+`dpsm eval FUNCTION --exhaustive`, on the f32 port; errors and bounds in eps, the rest shares and counts, as above.
+
+| function | points | unit | largest | bound | share | mean | 99% | rounded | other | open | outside | worst input |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|
+";
 
 /// The page that has a module's derivations.
 fn page(module: &str) -> &str {

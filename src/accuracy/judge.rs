@@ -115,6 +115,12 @@ impl Judge {
         Some(self.judge_by_interval(record, answer))
     }
 
+    /// Judges an answer by the bound and by the interval, in which it must lie as well; `None` for
+    /// a record outside the domain.
+    pub fn judge_strictly(&self, record: &[Word<f32>], answer: &[Word<f32>]) -> Option<Judged> {
+        self.inside(record).then(|| self.judge_by_interval(record, answer))
+    }
+
     /// Judges an answer by the interval of the port, and by the bound for each way to decide.
     fn judge_by_interval(&self, record: &[Word<f32>], answer: &[Word<f32>]) -> Judged {
         let (mut input, mut actual) = ([0.0; MOST_WORDS], [0.0; MOST_WORDS]);
@@ -201,9 +207,9 @@ fn numbers<'a, T: Float>(words: &[Word<T>], room: &'a mut [f64; MOST_WORDS]) -> 
     &room[..words.len()]
 }
 
-/// True where every float is the nearest one.
+/// True where every float is the nearest one, and integers are the same.
 fn rounded(actual: &[f64], exact: &[f64]) -> bool {
-    actual.iter().zip(exact).all(|(a, b)| *a == f64::from(*b as f32))
+    actual.iter().zip(exact).all(|(a, b)| a == b || *a == f64::from(*b as f32))
 }
 
 fn map<T>(word: Word<f32>, float: impl Fn(f32) -> T) -> Word<T> {

@@ -17,7 +17,8 @@ use crate::ulp::ulps_apart;
 /// Inputs that are judged at once.
 pub const CHUNK: usize = 1 << 12;
 
-/// One in so many results that are the port's own is judged where the interval is the bound.
+/// One in so many results must lie in the interval too, where a closed bound is checked for all;
+/// of results that are the port's own, it is the share that the interval judges at all.
 const SAMPLE: usize = 16;
 
 /// Bins of the histogram of shares of the bound, the last for what is above it.
@@ -258,7 +259,11 @@ fn search_by(
             let mut stats = Stats::default();
             for (place, record) in inputs.chunk(chunk).iter().enumerate() {
                 if let Some(answer) = answer(record, chunk * CHUNK as u64 + place as u64) {
-                    stats.note(record, judge.judge(record, &answer));
+                    let judged = match place % SAMPLE {
+                        0 => judge.judge_strictly(record, &answer),
+                        _ => judge.judge(record, &answer),
+                    };
+                    stats.note(record, judged);
                 }
             }
             done.fetch_add(stats.points, Ordering::Relaxed);
@@ -290,8 +295,10 @@ pub fn judge_all(judge: &Judge, records: &[Vec<Word<f32>>], answers: &[u32]) -> 
                 let apart = if ran { apart(&answer, &port) } else { 0 };
                 stats.compare(record, inside, apart);
                 // rounding to nearest lies in every interval (tests/interval.rs): a sample is enough
-                let sampled = judge.bound.unit == Unit::Interval && apart == 0;
-                if inside && (!sampled || place % SAMPLE == 0) {
+                let skipped = judge.bound.unit == Unit::Interval && apart == 0;
+                if inside && place % SAMPLE == 0 {
+                    stats.note(record, judge.judge_strictly(record, &answer));
+                } else if inside && !skipped {
                     stats.note(record, judge.judge(record, &answer));
                 }
             }
