@@ -16,6 +16,14 @@ fn most(row: &Row) -> f64 {
     others.fold(row.port.worst.share().max(row.loose.worst.share()), f64::max)
 }
 
+/// What is left of a closed bound.
+fn slack(row: &Row) -> String {
+    match row.judge.bound.unit {
+        Unit::Interval => "-".into(),
+        _ => format!("{:.2}", 1.0 - most(row)),
+    }
+}
+
 /// The largest error in eps, as a share of the interval, or nothing where there is none.
 fn largest(row: &Row, stats: Option<&Stats>) -> String {
     match (row.judge.bound.unit, stats) {
@@ -39,13 +47,13 @@ pub fn line(row: &Row) -> String {
     let others: String =
         row.others.iter().map(|stats| format!("{:>8}", largest(row, stats.as_ref()))).collect();
     format!(
-        "{:<34}{:>10}{:>9}{:>8}{:>8}{others}{:>8.2}",
+        "{:<34}{:>10}{:>9}{:>8}{:>8}{others}{:>8}",
         row.judge.bound.function,
         row.port.points,
         bound(row),
         largest(row, Some(&row.loose)),
         largest(row, Some(&row.port)),
-        1.0 - most(row)
+        slack(row)
     )
 }
 
@@ -139,12 +147,12 @@ pub fn write(names: &[String], rows: &[Row]) -> io::Result<()> {
         };
         let _ = writeln!(
             text,
-            "| `{}` | {} | {unit} | {allowed} | {} | {} |{others} {:.2} | {:.2} | {:.3} | {:.1}% | {} | {} | {} | ![]({}) |",
+            "| `{}` | {} | {unit} | {allowed} | {} | {} |{others} {} | {:.2} | {:.3} | {:.1}% | {} | {} | {} | ![]({}) |",
             bound_of.function,
             bound(row),
             largest(row, Some(&row.loose)),
             largest(row, Some(&row.port)),
-            1.0 - most(row),
+            slack(row),
             row.port.percentile(),
             row.port.mean(),
             100.0 * share(row.port.rounded),
