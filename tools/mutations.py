@@ -2,16 +2,19 @@
 """Applies deliberate mistakes one at a time and checks that the named test catches each.
 
 Run from a clean checkout: it changes files under src/ and wgsl/ and puts them back.
-    tools/mutations.py [PART OF A TEST'S NAME]
+    tools/mutations.py [--ports] [PART OF A FILE'S OR A TEST'S NAME]
+--ports takes only those whose test builds without any feature, seconds each.
 """
 
+import os
 import pathlib
+import signal
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
-# file, right, wrong, test file, test
+# file, right, wrong, test file, test, and part of the names of the functions tested (DPSM_ONLY)
 PORT = "src/scalar/"
 MUTATIONS = [
     ("hemisphere.rs", "DPSM_FRONT, p.z >= T::lit(0.0)", "DPSM_FRONT, p.z > T::lit(0.0)",
@@ -191,7 +194,8 @@ MUTATIONS = [
     ("tessellate.rs", "(one / sine_square - one).sqrt()",
      "((T::lit(1e4) + one / sine_square) - T::lit(1e4) - one).sqrt()",
      "tessellate", "level::level_in_f32_is_that_of_a_length_within_its_bound"),
-    ("tessellate.rs", ".min(f64::from(most)).max(1.0)", ".min(f64::from(most))",
+    ("tessellate.rs", "T::lit(1.0).max(cuts.ceil().min(T::lit(f64::from(most))))",
+     "cuts.ceil().min(T::lit(f64::from(most)))",
      "tessellate", "level::level_stays_between_one_and_most_whatever_is_asked"),
     ("shade.rs", "ambient + (diffuse + specular) * visibility", "(ambient + diffuse + specular) * visibility",
      "shade", "shadow_leaves_the_ambient_light_alone"),
@@ -365,7 +369,7 @@ MUTATIONS = [
      "map_error", "worst_texel_is_the_one_of_the_rest_with_the_largest_error"),
     # the modules and the host, on an adapter
     ("wgsl/paraboloid.wesl", "return dpsm_invert(own);", "return p.xy / (length(p) + p.z);",
-     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports"),
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_project"),
     ("wgsl/caster.wesl", "fn dpsm_caster_border", "fn dpsm_caster_edge",
      "adapter", "ports_and_modules_declare_the_same_functions_in_the_same_order"),
     ("wgsl/visibility.wesl", "at.depth - bias);", "at.depth + bias);",
@@ -374,7 +378,7 @@ MUTATIONS = [
      "case 3u: { return vec3<f32>(-p.x, p.z, -p.y); }",
      "cube", "adapter::adapter_agrees_with_the_port_and_a_texture_cube_samples_alike"),
     ("wgsl/tessellate.wesl", "    if w.y < w.z {", "    if w.y <= w.z {",
-     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports"),
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_tessellate_point"),
     ("src/gpu/evaluate.rs", "*word += 1;", "*word += 1; if *word == 8 { *word = 7; }",
      "adapter", "values_far_apart_in_one_struct_keep_their_places"),
     ("src/gpu/texels.wesl", "row % size.y", "size.y - 1u - row % size.y",
@@ -520,14 +524,14 @@ MUTATIONS = [
      "classify", "no_triangle_is_culled_that_covers_a_texel_centre"),
     ("classify.rs", "if error <= depth_tolerance {", "if error <= T::lit(1.0) {",
      "classify", "flat_triangles_are_within_their_tolerances"),
-    ("classify.rs", "/ nearest + unseen", "/ nearest",
+    ("classify.rs", "/ unit + unseen", "/ unit",
      "classify", "flat_error_is_an_upper_bound_up_to_a_tenth"),
     ("classify.rs", "T::lit(1.5) * errors", "errors",
      "classify", "flat_error_is_an_upper_bound_up_to_a_tenth"),
     ("classify.rs", "let seen = height > zero;", "let seen = true;",
      "classify", "degenerate_triangles_are_culled"),
-    ("classify.rs", ".all(|c| c.value().abs() <= DPSM_CLASSIFY_LARGEST)",
-     ".all(|c| !(c.value().abs() > DPSM_CLASSIFY_LARGEST))",
+    ("classify.rs", ".all(|c| c.abs() <= T::lit(DPSM_CLASSIFY_LARGEST))",
+     ".all(|c| !(c.abs() > T::lit(DPSM_CLASSIFY_LARGEST)))",
      "classify", "degenerate_triangles_are_culled"),
     ("classify.rs", "(path >> bit) & 1 != 0", "path & 1 != 0",
      "parts", "halves_partition_their_triangle"),
@@ -646,7 +650,7 @@ MUTATIONS = [
     # filters
     ("kernel.rs", "let w = offset * reach;", "let w = offset * T::lit(0.05);",
      "kernel", "cone_is_exactly_the_disk"),
-    ("kernel.rs", "Vec3::new(p.x * k, p.y * k, tangent * l) / below", "Vec3::new(p.x, p.y, tangent * l) / below",
+    ("kernel.rs", "Vec3::new(k, k, tangent)", "Vec3::new(T::lit(1.0), T::lit(1.0), tangent)",
      "kernel", "cone_is_exactly_the_disk"),
     ("kernel.rs", "uv: product / beyond.max(within),", "uv: product / within,",
      "kernel", "tap_beyond_the_rim_reads_the_same_direction_in_the_other_hemisphere"),
@@ -756,8 +760,8 @@ MUTATIONS = [
     ("tessellate.rs", "let cell = [index / 3 / cut, index / 3 % cut];",
      "let cell = [(index as f32 / 3.0) as u32 / cut, index / 3 % cut];",
      "integers", "weights_of_a_triangle_are_exact_up_to_the_largest_level"),
-    ("tessellate.rs", ".min(f64::from(most))",
-     "",
+    ("tessellate.rs", "cuts.ceil().min(T::lit(f64::from(most)))",
+     "cuts.ceil()",
      "integers", "level_is_at_most_the_largest_for_any_edge"),
     ("classify.rs", "(path >> bit) & 1 != 0",
      "bit < 30 && (path >> bit) & 1 != 0",
@@ -841,41 +845,149 @@ MUTATIONS = [
      "cli", "csv_files_take_time_as_their_length_not_its_square"),
     ("src/cli/bake.rs", "    arguments.check()?;\n", "",
      "cli", "probe_names_the_line_and_column_of_a_bad_point"),
+    # what any adapter may answer
+    ("interval.rs", "lower(low, 2.5), upper(high, 2.5), value)", "lower(low, 0.5), upper(high, 0.5), value)",
+     "interval", "quotients_are_within_two_and_a_half_ulp_and_roots_within_their_inverses"),
+    ("interval.rs", "lower(low, 2.5), upper(high, 2.5), value)", "lower(low, 3.5), upper(high, 3.5), value)",
+     "interval", "quotients_are_within_two_and_a_half_ulp_and_roots_within_their_inverses"),
+    ("interval.rs", "        // 2 ULP of the inverse root, 2.5 of its inverse\n",
+     "        return Self::hull(self.low.sqrt(), self.high.sqrt(), value);\n",
+     "interval", "quotients_are_within_two_and_a_half_ulp_and_roots_within_their_inverses"),
+    ("interval.rs", "if low > 0.0 && low < SMALLEST {", "if false {",
+     "interval", "subnormal_numbers_may_be_flushed"),
+    ("interval.rs", "if high < 0.0 && high > -SMALLEST {", "if high < 0.0 {",
+     "interval", "sums_and_products_hold_both_roundings_and_nothing_else"),
+    ("interval.rs", "(a + b + c).or(b + c + a).or(c + a + b)", "a + b + c",
+     "interval", "dot_products_hold_every_order"),
+    ("interval.rs", "            false => decide(exact),", "            false => exact,",
+     "interval", "decisions_are_open_where_intervals_overlap_and_only_there"),
+    ("interval.rs", "let equal = (self.low <= other.high && other.low <= self.high, Ordering::Equal);",
+     "let equal = (true, Ordering::Equal);",
+     "interval", "decisions_are_open_where_intervals_overlap_and_only_there"),
+    ("interval.rs", "if ways > 1.0 { choose(ways as u32) } else { 0 }", "0",
+     "interval", "whole_numbers_are_chosen_and_then_known"),
+    ("interval.rs", "if !(low >= -LARGEST && high <= LARGEST) {", "if low.is_nan() {",
+     "interval", "nothing_is_promised_of_overflow_zero_divisors_and_negative_roots"),
+    ("interval.rs", "if self.is_anything() || !specified {", "if self.is_anything() {",
+     "interval", "nothing_is_promised_of_overflow_zero_divisors_and_negative_roots"),
+    ("interval.rs", "return Self::hull(least * least, a.max(b) * a.max(b), value);", "let _ = least * b;",
+     "interval", "squares_are_not_below_zero"),
+    ("interval.rs", "[if rest < 0.0 { sum.next_down() }", "[if rest < -1.0 { sum.next_down() }",
+     "interval", "sums_beyond_f64_are_rounded_either_way_too"),
+    # what is judged, searched and kept
+    ("src/accuracy/judge.rs", "Judged { verdict: Verdict::Broken,", "Judged { verdict: Verdict::Within,",
+     "judge", "either_answer_is_allowed_where_a_decision_is_open_and_nothing_between"),
+    ("src/accuracy/judge.rs", "        Some(self.judge_by_interval(record, answer))\n    }\n\n    /// Judges an answer by the interval",
+     "        Some(Judged { verdict: Verdict::Broken, error: Error::default(), rounded: false })\n    }\n\n    /// Judges an answer by the interval",
+     "judge", "either_answer_is_allowed_where_a_decision_is_open_and_nothing_between"),
+    ("src/accuracy/judge.rs", "(Word::Integer(a), Word::Integer(b)) => a == b,", "(Word::Integer(_), Word::Integer(_)) => true,",
+     "judge", "wrong_integers_beside_right_floats_are_broken"),
+    ("src/accuracy/judge.rs", "&& error.share() <= 1.0", "",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/judge.rs", "if way == 1 { Verdict::Within } else { Verdict::Decision }", "Verdict::Within",
+     "judge", "either_answer_is_allowed_where_a_decision_is_open_and_nothing_between"),
+    ("src/accuracy/search.rs", "self.broken += 1;", "",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/search.rs", "self.broken += other.broken;", "",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/search.rs", "self.broken_input = other.broken_input;", "",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/search.rs", "self.differ += 1;", "",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/search.rs", "if apart > 0 && !inside {", "if apart > 0 && inside {",
+     "judge", "broken_and_different_answers_are_counted_and_their_inputs_kept"),
+    ("src/accuracy/search.rs", "if share > self.worst.share() {", "if share > 1.0 {",
+     "judge", "searches_keep_the_worst_input_and_count_each_answer_once"),
+    ("src/accuracy/search.rs", "if other.worst.share() > self.worst.share() {", "if other.worst.share() > 1.0 {",
+     "judge", "searches_keep_the_worst_input_and_count_each_answer_once"),
+    ("src/accuracy/search.rs", "let mut left = all / 100;", "let mut left = all;",
+     "judge", "searches_keep_the_worst_input_and_count_each_answer_once"),
+    ("src/accuracy/search.rs", "(!sampled || place % SAMPLE == 0)", "!sampled",
+     "judge", "answers_judged_by_intervals_are_sampled_and_different_ones_always_judged"),
+    ("src/accuracy/search.rs", "Unit::Interval && apart == 0;", "Unit::Interval;",
+     "judge", "answers_judged_by_intervals_are_sampled_and_different_ones_always_judged"),
+    ("src/accuracy/loose.rs", "f64::from(flushed(other.0)), 2.5))", "f64::from(flushed(other.0)), 3.5))",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/accuracy/loose.rs", "f64::from(flushed(other.0)), 2.5))", "f64::from(flushed(other.0)), 3.5))",
+     "accuracy", "any_driver_stays_within_the_bounds", "dpsm_texel_width"),
+    ("src/accuracy/loose.rs", "true if left > 0.0 =>", "true if left > f64::MAX =>",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/accuracy/loose.rs", "if x.is_subnormal() && DRIVER", "if x.is_nan() && DRIVER",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/accuracy/loose.rs", "rng.shuffle(&mut terms)", "(rng.bool(), &mut terms)",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/accuracy/loose.rs", "Loose(within(1.0 / f64::from(within(1.0 / x.sqrt(), 2.0)), 2.5))", "Loose(x.sqrt() as f32)",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/accuracy/loose.rs", "within(1.0 / x.sqrt(), 2.0)), 2.5)", "within(1.0 / x.sqrt(), 4.0)), 4.5)",
+     "judge", "loose_driver_uses_each_freedom_and_no_more"),
+    ("src/scalar/bounds/rows.rs", "relative(r, a, 9.5 + more)", "relative(r, a, 1.0 + more)",
+     "accuracy", "any_driver_stays_within_the_bounds", "dpsm_project"),
+    ("src/scalar/bounds/rows.rs", "relative(r, a, 9.5 + more)", "relative(r, a, 4.0 + more)",
+     "accuracy", "worst_inputs_that_were_found_stay_within_their_bounds"),
+    ("src/scalar/bounds/rows.rs", "absolute(r, a, 3.0, i[1] + i[0].abs() * i[2])", "absolute(r, a, 1.0, i[1] + i[0].abs() * i[2])",
+     "accuracy", "any_driver_stays_within_the_bounds", "dpsm_distance"),
+    ("src/scalar/bounds/rows.rs", "within(&i[1..], 0.0, 1.0),\n        |_, r, a| relative(r, a, 3.5);", "within(&i[1..], 0.0, 1.0),\n        |_, r, a| relative(r, a, 4.0);",
+     "accuracy", "comments_of_the_functions_state_the_tables_bounds"),
+    ("src/cases/worst.txt", "dpsm_project be038047 ", "dpsm_project 7f038047 ",
+     "accuracy", "worst_inputs_that_were_found_stay_within_their_bounds"),
+    ("src/cases/worst.txt", "dpsm_invert bf1862d3 413bcace", "dpsm_invert bf1862d3",
+     "accuracy", "worst_inputs_that_were_found_stay_within_their_bounds"),
+    # mistakes in the modules alone
+    ("wgsl/paraboloid.wesl", "max(length(p) + abs(p.z), DPSM_SMALLEST)", "max(length(p) + p.z, DPSM_SMALLEST)",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_project_own"),
+    ("wgsl/hemisphere.wesl", "DPSM_FRONT, p.z >= 0.0)", "DPSM_FRONT, p.z > 0.0)",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_hemisphere"),
+    ("wgsl/hemisphere.wesl", "dot(light.right, p), dot(light.up, p)", "dot(light.up, p), dot(light.right, p)",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_to_light"),
+    ("wgsl/depth.wesl", "return near + depth * (far - near);", "return far + depth * (near - far);",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_distance"),
+    ("wgsl/depth.wesl", "return clamp(dpsm_depth(l, near, far), 0.0, 1.0);", "return dpsm_depth(l, near, far);",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_receiver_depth"),
+    ("wgsl/light.wesl", "select(hemisphere, 0u, light.placement", "select(1u - hemisphere, 0u, light.placement",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_light_layer"),
+    ("wgsl/kernel.wesl", "product / max(beyond, within)", "product / min(beyond, within)",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_kernel_tap"),
+    ("wgsl/visibility.wesl", "let disk = dpsm_project(dpsm_flip(p, hemisphere));", "let disk = dpsm_project(p);",
+     "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_lookup"),
 ]
 
 
-def caught(test_file, test):
+SCENE = ["--no-default-features", "--features", "scene"]
+# the features that a test file needs; none where it is not listed
+FEATURES = {
+    "accuracy": [], "adapter": [], "maps": [], "cube": [], "render": [], "light": [],
+    "formats": [], "hard_cases": [], "faults": [], "cli": [], "link": [], "native": [],
+    "opinions": [], "judge": [], "measure": SCENE, "frame": SCENE, "scene": SCENE, "truth": SCENE,
+    "map_error": SCENE, "bias_scenes": SCENE, "cube_maps": SCENE,
+}
+
+
+def caught(test_file, test, only):
     """True when the test runs and fails; a mistake that does not compile proves nothing."""
-    features = {
-        "accuracy": [], "adapter": [], "maps": [], "cube": [], "render": [], "light": [],
-        "formats": [], "hard_cases": [], "faults": [], "cli": [],
-        "measure": ["--no-default-features", "--features", "scene"],
-        "frame": ["--no-default-features", "--features", "scene"],
-        "scene": ["--no-default-features", "--features", "scene"],
-        "truth": ["--no-default-features", "--features", "scene"],
-        "map_error": ["--no-default-features", "--features", "scene"],
-        "bias_scenes": ["--no-default-features", "--features", "scene"],
-        "cube_maps": ["--no-default-features", "--features", "scene"],
-    }.get(test_file, ["--no-default-features"])
+    features = FEATURES.get(test_file, ["--no-default-features"])
     command = ["cargo", "test", "--quiet", *features, "--test", test_file, "--", "--exact", test]
-    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    environment = {**os.environ, "DPSM_ONLY": only} if only else None
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env=environment)
     return run.returncode != 0 and "1 failed" in run.stdout + run.stderr
 
 
 def main():
-    part = sys.argv[1] if len(sys.argv) > 1 else ""
-    chosen = [m for m in MUTATIONS if part in m[4]]
+    parts = [argument for argument in sys.argv[1:] if argument != "--ports"]
+    part = parts[0] if parts else ""
+    chosen = [m for m in MUTATIONS if part in m[0] or part in m[4]]
+    if "--ports" in sys.argv:
+        chosen = [m for m in chosen if m[3] not in FEATURES]
     survived = 0
-    for file, right, wrong, test_file, test in chosen:
+    for file, right, wrong, test_file, test, *only in chosen:
         path = ROOT / (file if "/" in file else PORT + file)
         text = path.read_text()
         if right not in text:
-            print(f"STALE     {path.name}: {right!r} is not there")
+            print(f"STALE     {path.name}: {right!r} is not there", flush=True)
             survived += 1
             continue
         try:
             path.write_text(text.replace(right, wrong))
-            if caught(test_file, test):
+            if caught(test_file, test, *only or [None]):
                 print(f"caught    {path.name}: {test}", flush=True)
             else:
                 print(f"SURVIVED  {path.name}: {wrong!r} was not caught by {test}", flush=True)
@@ -883,7 +995,10 @@ def main():
         finally:
             path.write_text(text)
     print(f"{len(chosen) - survived} of {len(chosen)} mistakes caught")
-    sys.exit(1 if survived else 0)
+    sys.exit(1 if survived or not chosen else 0)
 
 
-main()
+if __name__ == "__main__":
+    # a killed run puts its file back too
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    main()

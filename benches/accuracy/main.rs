@@ -62,6 +62,15 @@ impl Options {
                 other => return Err(format!("unknown option `{other}`")),
             }
         }
+        if options.search == 0 || options.points == 0 {
+            return Err("--search and --points must be at least 1".into());
+        }
+        if !bounds::all().iter().any(|bound| bound.function.contains(&options.only)) {
+            return Err(format!("no function's name contains `{}`", options.only));
+        }
+        if options.write && !options.only.is_empty() {
+            return Err("--write writes every function's line: leave --only out".into());
+        }
         Ok(options)
     }
 }
@@ -104,8 +113,8 @@ fn main() -> Result<(), String> {
     }
     let columns: String = (1..=all.len()).map(|k| format!("{:>8}", format!("[{k}]"))).collect();
     println!(
-        "{:<34}{:>10}{:>9}{:>8}{columns}{:>8}",
-        "function", "points", "bound", "port", "slack"
+        "{:<34}{:>10}{:>9}{:>8}{:>8}{columns}{:>8}",
+        "function", "points", "bound", "any", "port", "slack"
     );
     let mut rows = Vec::new();
     let mut broken = Vec::new();
@@ -144,11 +153,11 @@ fn main() -> Result<(), String> {
         println!("{}", page::line(&row));
         rows.push(row);
     }
+    if !broken.is_empty() {
+        return Err(format!("outside their bounds:\n{}", broken.join("\n")));
+    }
     if options.write {
         page::write(&names, &rows).map_err(|error| format!("cannot write the page: {error}"))?;
     }
-    match broken.is_empty() {
-        true => Ok(()),
-        false => Err(format!("outside their bounds:\n{}", broken.join("\n"))),
-    }
+    Ok(())
 }

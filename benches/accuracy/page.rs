@@ -29,7 +29,17 @@ fn largest(row: &Row, stats: Option<&Stats>) -> String {
     match (row.judge.bound.unit, stats) {
         (_, None) => "-".into(),
         (Unit::Exact, Some(stats)) if stats.broken == 0 => "0".into(),
-        (_, Some(stats)) => format!("{:.2}", stats.worst.eps),
+        (Unit::Interval, Some(stats)) => format!("{:.2}", stats.worst.eps),
+        (_, Some(stats)) => {
+            let own = format!("{:.1}", stats.worst.bound);
+            // its own, where the bound depends on the input
+            let of = if own == bound(row) || stats.worst.eps == 0.0 {
+                String::new()
+            } else {
+                format!("/{own}")
+            };
+            format!("{:.2}{of}", stats.worst.eps)
+        }
     }
 }
 
@@ -45,7 +55,7 @@ fn bound(row: &Row) -> String {
 /// One line of the terminal's table.
 pub fn line(row: &Row) -> String {
     let others: String =
-        row.others.iter().map(|stats| format!("{:>8}", largest(row, stats.as_ref()))).collect();
+        row.others.iter().map(|stats| format!(" {:>7}", largest(row, stats.as_ref()))).collect();
     format!(
         "{:<34}{:>10}{:>9}{:>8}{:>8}{others}{:>8}",
         row.judge.bound.function,

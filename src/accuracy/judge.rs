@@ -10,6 +10,9 @@ use crate::scalar::ports::{self, Port, Word};
 /// Room for the longest record, 46 words of `dpsm_triangle_fragment`.
 const MOST_WORDS: usize = 64;
 
+/// The error of an answer that is outside altogether.
+const BROKEN: Error = Error { eps: f64::INFINITY, bound: 1.0 };
+
 /// What an answer is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -41,6 +44,8 @@ pub struct Judge {
     pub bound: &'static Bound,
     /// The function's signature.
     pub signature: Signature,
+    /// Words of a result.
+    outputs: usize,
     /// The port that answers as a driver does that rounds to nearest.
     pub port: Port<f32>,
     /// The port as any driver may run it.
@@ -53,9 +58,11 @@ impl Judge {
     /// The judge of a function; `None` for one without a port.
     pub fn of(function: &str) -> Option<Self> {
         let validated = crate::validate(&crate::link::link_function(function).ok()?).ok()?;
+        let signature = Signature::of(&validated.module, function).ok()?;
         Some(Self {
             bound: Bound::of(function)?,
-            signature: Signature::of(&validated.module, function).ok()?,
+            outputs: signature.outputs().len(),
+            signature,
             port: ports::find(function)?,
             loose: ports::find(function)?,
             exact: ports::find(function)?,
@@ -89,8 +96,8 @@ impl Judge {
         if !self.inside(record) {
             return None;
         }
-        if self.bound.unit == Unit::Interval {
-            return Some(self.judge_by_interval(record, answer));
+        if answer.len() != self.outputs {
+            return Some(Judged { verdict: Verdict::Broken, error: BROKEN, rounded: false });
         }
         let (mut input, mut actual, mut numbers_of_exact) =
             ([0.0; MOST_WORDS], [0.0; MOST_WORDS], [0.0; MOST_WORDS]);
@@ -102,6 +109,7 @@ impl Judge {
         }
         let mut exact = Vec::with_capacity(answer.len());
         if (self.exact)(&wide[..record.len()], &mut exact).is_some()
+            && self.bound.unit != Unit::Interval
             && same_integers(answer, &exact)
         {
             let exact = numbers(&exact, &mut numbers_of_exact);
@@ -128,8 +136,10 @@ impl Judge {
         let actual = numbers(answer, &mut actual);
         let words: Vec<_> = record.iter().map(|word| map(*word, Interval::exact)).collect();
         let mut way = 0;
-        let mut judged =
-            Judged { verdict: Verdict::Broken, error: Error::default(), rounded: false };
+        let mut judged = Judged { verdict: Verdict::Broken, error: BROKEN, rounded: false };
+        if answer.len() != self.outputs {
+            return judged;
+        }
         let port = || {
             let mut out = Vec::new();
             (self.interval)(&words, &mut out).map(|()| out)
@@ -143,11 +153,12 @@ impl Judge {
             let mut exact = [0.0; MOST_WORDS];
             let exact = numbers(&result, &mut exact);
             let open = |word: &Word<Interval>| matches!(word, Word::Float(x) if x.is_anything());
-            if result.iter().any(open) {
+            let error = self.bound.error(input, exact, actual);
+            // a closed bound holds also where intervals have lost the sign of a divisor
+            if error.is_none() && result.iter().any(open) {
                 judged.verdict = Verdict::Open;
                 return true;
             }
-            let error = self.bound.error(input, exact, actual);
             judged.error = error.unwrap_or_else(|| off_middle(&result, actual));
             judged.rounded = rounded(actual, exact);
             let fits = judged.error.share() <= 1.0;
@@ -156,7 +167,7 @@ impl Judge {
             }
             fits
         });
-        if found.is_none() {
+        if found.is_none() && self.bound.unit == Unit::Interval {
             judged.verdict = Verdict::Open; // more ways to decide than were tried
         }
         judged

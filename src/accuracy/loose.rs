@@ -1,4 +1,5 @@
-//! A driver that uses every freedom that WGSL grants, at random.
+//! A driver that uses the freedoms of WGSL's table of accuracies, at random. Other rewrites by
+//! real algebra, which WGSL allows as well, are not among them (docs/numerics.md).
 
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -68,7 +68,16 @@ impl Records {
                 _ if integers => words.push(Word::Integer(rng.u32(0..2))),
                 ("light", _) if self.centred => light(rng).write(&mut words),
                 _ if wild => words.extend(kinds.iter().map(|kind| any(*kind, rng))),
-                ("light", _) => light(rng).write(&mut words),
+                ("light", _) => {
+                    let mut light = light(rng);
+                    if rng.bool() {
+                        light.near = near;
+                        light.far = near * (1.0 + spread(rng, -10, 12).abs());
+                        light.size = map;
+                        light.first_layer = rng.u32(..) >> rng.u32(0..32);
+                    }
+                    light.write(&mut words);
+                }
                 ("normal" | "to_light" | "to_eye", 3) => unit(rng).write(&mut words),
                 ("guard" | "visibility" | "bias" | "tau" | "depth_tolerance", 1)
                 | ("cosine" | "window" | "quantum" | "tolerance", 1) => {
@@ -151,7 +160,13 @@ impl Records {
                 ("a", 2) => disk_a.write(&mut words),
                 ("b" | "c", 2) => beside(disk_a, rng).write(&mut words),
                 ("hull", 6) => {
-                    [disk_a, beside(disk_a, rng), beside(disk_a, rng)].write(&mut words);
+                    let mut near =
+                        || disk_a + Vec2::new(spread(rng, -14, -4), spread(rng, -14, -4));
+                    [disk_a, near(), near()].write(&mut words);
+                }
+                ("distances", 3) => {
+                    let p = point(rng, -24, 24);
+                    Vec3::new(p.x.abs(), p.y.abs(), p.z.abs()).write(&mut words);
                 }
                 ("before" | "after", 2) => {
                     let (sine, cosine) = (std::f64::consts::TAU * rng.f64()).sin_cos();

@@ -1,7 +1,5 @@
 //! Inputs over a domain, in numbers: random, spaced evenly over the floats' bits, and at edges.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use fastrand::Rng;
 use rayon::prelude::*;
 
@@ -81,8 +79,9 @@ impl Stats {
         self.rounded += u64::from(judged.rounded);
         self.sum += share;
         let bin = (share * (BINS - 1) as f64) as usize;
-        self.histogram[if share > 1.0 { BINS - 1 } else { bin.min(BINS - 2) }] += 1;
-        if share > self.worst.share() {
+        let broken = judged.verdict == Verdict::Broken || share.is_nan();
+        self.histogram[if broken { BINS - 1 } else { bin.min(BINS - 2) }] += 1;
+        if share > self.worst.share() || share.is_nan() {
             self.worst = judged.error;
             self.input = record.iter().map(|word| bits(*word)).collect();
         }
@@ -188,7 +187,12 @@ impl Inputs {
         for _ in 0..rng.usize(1..=3) {
             let at = rng.usize(..words.len());
             let other = words[rng.usize(..words.len())];
-            let Word::Float(old) = words[at] else { continue };
+            let Word::Float(old) = words[at] else {
+                // of every length, and at the ends
+                let bits = rng.u32(..) >> rng.u32(0..32);
+                words[at] = Word::Integer(if rng.bool() { bits } else { u32::MAX - bits });
+                continue;
+            };
             let new = match rng.u8(0..4) {
                 0 => f32::from_bits(rng.u32(..)),
                 // a step that is odd meets every pattern of bits
@@ -248,29 +252,31 @@ fn search_by(
     progress: impl Fn(u64) + Sync,
 ) -> Stats {
     let inputs = Inputs::of(judge);
-    let done = AtomicU64::new(0);
-    let chunks = points.div_ceil(CHUNK as u64) * 32;
-    (0..chunks)
-        .into_par_iter()
-        .map(|chunk| {
-            if done.load(Ordering::Relaxed) >= points {
-                return Stats::default();
-            }
-            let mut stats = Stats::default();
-            for (place, record) in inputs.chunk(chunk).iter().enumerate() {
-                if let Some(answer) = answer(record, chunk * CHUNK as u64 + place as u64) {
-                    let judged = match place % SAMPLE {
-                        0 => judge.judge_strictly(record, &answer),
-                        _ => judge.judge(record, &answer),
-                    };
-                    stats.note(record, judged);
-                }
-            }
-            done.fetch_add(stats.points, Ordering::Relaxed);
-            progress(stats.points);
-            stats
-        })
-        .reduce(Stats::default, Stats::and)
+    let of_chunk = |chunk: u64| {
+        let mut stats = Stats::default();
+        for (place, record) in inputs.chunk(chunk).iter().enumerate() {
+            let number = chunk.wrapping_mul(CHUNK as u64).wrapping_add(place as u64);
+            let Some(answer) = answer(record, number) else { continue };
+            let judged = match place % SAMPLE {
+                0 => judge.judge_strictly(record, &answer),
+                _ => judge.judge(record, &answer),
+            };
+            stats.note(record, judged);
+        }
+        progress(stats.points);
+        stats
+    };
+    let mut stats = Stats::default();
+    let most = points.saturating_mul(32).div_ceil(CHUNK as u64);
+    let mut first = 0;
+    // in rounds, so that the same chunks are judged in every run
+    while stats.points < points && first < most {
+        let round = (points - stats.points).div_ceil(CHUNK as u64).min(1024);
+        let found = (first..first + round).into_par_iter().map(of_chunk);
+        stats = stats.and(found.reduce(Stats::default, Stats::and));
+        first += round;
+    }
+    stats
 }
 
 /// Judges an implementation's answers to records, given as flat words, and counts those that are

@@ -107,7 +107,8 @@ pub fn add(function: &str, cases: &mut Cases) {
         "dpsm_triangle_tip" => {
             // a sine of at least 1/64
             let domain = |sine: f32| when(sine >= 1.0 / 64.0);
-            cases.each(&SINES, domain, |y| (Vec2::new(1.0, 0.0), Vec2::new(0.5, y), 0.01, 0.02));
+            let after = |y: f32| Vec2::new((1.0 - y * y).sqrt(), y);
+            cases.each(&SINES, domain, |y| (Vec2::new(1.0, 0.0), after(y), 0.01, 0.02));
         }
         "dpsm_triangle_needle" => {
             let domain = |t| chords(8.0, t);

@@ -21,7 +21,7 @@ use super::{AdapterChoice, CliError, search};
 Writes CSV, one line for each component of each result: adapter and port, the f64 reference, how
 many floats the adapter is from the port, how many ULP the port is from the reference, and the
 share of the function's bound that the adapter's result takes (the port's where there is none);
-`open` where WGSL promises nothing, empty outside the function's domain.
+`open` where WGSL promises nothing, `outside` above the bound, empty outside the function's domain.
 
 With --exhaustive: one line a function, the port's largest error over so many inputs of its domain,
 random, spaced evenly over all floats, and at edges; above the bound the exit code is 1.
@@ -138,6 +138,7 @@ fn table(
         let judged = judge.as_ref().and_then(|judge| judge.judge(&record.words, &answer));
         let share = judged.map_or(String::new(), |judged| match judged.verdict {
             Verdict::Open => "open".into(),
+            Verdict::Broken => "outside".into(),
             _ => format!("{:.3}", judged.error.share()),
         });
         for (k, component) in outputs.iter().enumerate() {

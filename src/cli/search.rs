@@ -16,6 +16,12 @@ pub fn search(function: Option<&str>, points: u64, output: Option<&Path>) -> Res
         Some(function) => vec![function],
         None => bounds::all().iter().map(|bound| bound.function).collect(),
     };
+    // hours later is too late to learn that the table has no place
+    if let Some(path) = output {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        tempfile::tempfile_in(folder.unwrap_or(Path::new(".")))
+            .map_err(|source| CliError::Write { path: path.into(), source, remedy: "--output" })?;
+    }
     let broken = |error: csv::Error| CliError::Usage(format!("cannot write the table: {error}"));
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer
@@ -36,7 +42,8 @@ pub fn search(function: Option<&str>, points: u64, output: Option<&Path>) -> Res
         ])
         .map_err(broken)?;
     let mut outside = Vec::new();
-    let all = bar("points", points as usize * names.len());
+    let all =
+        bar("points", usize::try_from(points).unwrap_or(usize::MAX).saturating_mul(names.len()));
     for name in names {
         let judge = match Judge::of(name) {
             Some(judge) => judge,

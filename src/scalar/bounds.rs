@@ -60,7 +60,7 @@ impl Error {
     /// The one that is closer to its bound.
     fn or(self, other: Self) -> Self {
         // a NaN is above every bound
-        if other.share() <= self.share() { self } else { other }
+        if self.share().is_nan() || other.share() <= self.share() { self } else { other }
     }
 }
 

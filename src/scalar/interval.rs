@@ -5,7 +5,8 @@
 //! within 2.5 ULP, roots through their inverse, sums of a dot product in any order, subnormal
 //! numbers flushed or kept. Each carries the exact value too, in f64. Where an interval straddles a
 //! decision's edge the answer is a choice: [`answers`] runs a port once for each way to decide, so
-//! both are accepted there, and only there. The rules and their source are in docs/numerics.md.
+//! both are accepted there, and only there. Other rewrites by real algebra are not
+//! modelled. The rules and their source are in docs/numerics.md.
 
 use std::cell::RefCell;
 use std::cmp::Ordering;

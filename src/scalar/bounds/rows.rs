@@ -96,17 +96,16 @@ impl Light<'_> {
     fn inside(&self) -> bool {
         let rows = [&self.0[4..7], &self.0[8..11], &self.0[12..15]];
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        // orthonormal up to rounding
-        let straight = (0..3).all(|i| {
-            (0..3).all(|j| (dot(rows[i], rows[j]) - f64::from(i == j)).abs() <= 8.0 * EPS)
-        });
+        // orthonormal up to 1e-3 a row
+        let straight = (0..3)
+            .all(|i| (0..3).all(|j| (dot(rows[i], rows[j]) - f64::from(i == j)).abs() <= 2.5e-3));
         straight
             && spheres(self.near(), self.far())
             && within(&[self.guard()], 0.0, 1.0)
             && within(&self.0[15..16], 1.0, two(24))
             && within(&self.0[16..20], 0.0, 1.0)
             && largest(&self.0[..3]) <= two(62)
-            && self.0[20] <= two(31)
+            && self.0[20] <= two(32) - 2.0
             && self.0[21] <= 1.0
             && (1.0..=2.0).contains(&self.0[22])
     }
@@ -128,10 +127,39 @@ fn axis(p: &[f64], face: f64) -> f64 {
     }
 }
 
+/// Within the unit disk, or on its rim up to rounding.
+fn on_disk(uv: &[f64]) -> bool {
+    length(uv) <= 1.0 + 8.0 * EPS
+}
+
+/// A unit vector up to rounding.
+fn unit(v: &[f64]) -> bool {
+    (length(v) - 1.0).abs() <= 32.0 * EPS
+}
+
+/// No two of the disk's points farther apart.
+fn chords(points: &[f64], most: f64) -> bool {
+    let apart = |a: &[f64], b: &[f64]| length(&[a[0] - b[0], a[1] - b[1]]);
+    let (a, b, c) = (&points[..2], &points[2..4], &points[4..6]);
+    apart(a, b) <= most && apart(b, c) <= most && apart(c, a) <= most
+}
+
+/// A prepared triangle as dpsm_triangle gives it: lines, plane and span.
+fn prepared(i: &[f64]) -> bool {
+    let line = |k: usize| length(&i[k..k + 3]) <= 1.0 && i[k + 3].abs() <= 1.0;
+    let farthest = i[15];
+    line(0)
+        && line(4)
+        && line(8)
+        && (two(-50)..=two(62)).contains(&farthest)
+        // its height is at least 2^-20 of the farthest vertex's distance
+        && (1.0 - 32.0 * EPS..=two(21)).contains(&length(&i[12..15]))
+        && largest(&i[16..19]) <= two(40)
+}
+
 /// A receiver as dpsm_receiver gives it.
 fn receiver(i: &[f64]) -> bool {
-    let normal = length(&i[..3]);
-    (normal - 1.0).abs() <= 32.0 * EPS
+    unit(&i[..3])
         && i[4] >= two(-51)
         && i[4] <= two(62)
         && (0.0..=i[4] * (1.0 + 32.0 * EPS)).contains(&i[3])
@@ -157,7 +185,8 @@ fn turned(i: &[f64], r: &[f64], a: &[f64]) -> Error {
         (actual.dot(at) - exact.dot(at)).abs()
     };
     let most = (0..=8).map(|step| off(f64::from(step) / 8.0)).fold(0.0, f64::max);
-    Error { eps: most / EPS, bound }
+    let stretched = Error { eps: (length(a) - 1.0).abs() / EPS, bound: 19.0 }; // 11 sqrt 3
+    Error { eps: most / EPS, bound }.or(stretched)
 }
 
 macro_rules! bounds {
@@ -234,6 +263,7 @@ caster {
             let depth = (11.5 * l + 5.5 * light.near()) / light.range() + i[27];
             projected(i, &r[..2], &a[..2], 3.5)
                 .or(absolute(&r[2..3], &a[2..3], 1.0, depth))
+                .or(exact(&r[3..4], &a[3..4]))
                 .or(absolute(&r[4..], &a[4..], 1.0, 8.0 * l / light.far() + 1.0))
         };
     dpsm_caster_keep Exact any, |_, r, a| exact(r, a);
@@ -281,9 +311,9 @@ triangle {
     dpsm_triangle_plane Interval triangle, none;
     dpsm_triangle Interval |i| triangle(&i[..9]) && light(i, 9).inside(), none;
     dpsm_triangle_span Interval |i| triangle(&i[..9]) && light(i, 9).inside(), none;
-    dpsm_triangle_inside Interval |i| length(&i[19..]) <= 4.0, none;
-    dpsm_triangle_covers Interval |i| length(&i[19..]) <= 4.0, none;
-    dpsm_triangle_distance Interval |i| length(&i[19..]) <= 4.0, none;
+    dpsm_triangle_inside Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
+    dpsm_triangle_covers Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
+    dpsm_triangle_distance Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
     dpsm_triangle_disk Absolute
         |i| {
             // half the map's width is 1 + guard
@@ -293,8 +323,8 @@ triangle {
                 && (i[1] - i[3]).abs() <= i[2]
         },
         |i, r, a| absolute(r, a, 5.0, i[2] * i[4]);
-    dpsm_triangle_behind Interval any, none;
-    dpsm_triangle_fragment Interval |i| length(&i[19..21]) <= 4.0 && light(i, 21).inside(), none;
+    dpsm_triangle_behind Interval |i| prepared(i) && within(&i[19..], two(-50), i[15]), none;
+    dpsm_triangle_fragment Interval |i| prepared(i) && length(&i[19..21]) <= 4.0 && light(i, 21).inside(), none;
     dpsm_triangle_weights Interval |i| triangle(&i[..9]) && length(&i[9..]) <= 4.0, none;
     dpsm_triangle_hull Interval |i| triangle(&i[..9]) && light(i, 9).inside(), none;
     dpsm_triangle_tip Absolute
@@ -308,21 +338,30 @@ triangle {
             let sine = i[0] * i[3] - i[1] * i[2];
             absolute(r, a, 12.0, (i[4] + i[5]).max(FLOOR) / (sine * sine))
         };
-    dpsm_triangle_needle Interval any, none;
+    dpsm_triangle_needle Interval
+        |i| largest(&i[..8]) <= 4.0 && within(&i[8..], 0.0, 4.0), none;
 }
 classify {
     dpsm_classify_usable Exact any, |_, r, a| exact(r, a);
     dpsm_classify Interval |i| light(i, 9).inside(), none;
-    dpsm_classify_flat_error Interval any, none;
-    dpsm_classify_distance Interval
+    dpsm_classify_flat_error Interval
         |i| {
-            (length(&i[..3]) - 1.0).abs() <= 32.0 * EPS && i[3].abs() <= two(62) && length(&i[4..]) <= 4.0
+            largest(&i[..6]) <= 4.0
+                && chords(i, 0.25)
+                && within(&i[6..9], two(-50), two(62))
+                && unit(&i[9..12])
+                && i[12].abs() <= two(62)
         },
         none;
-    dpsm_classify_misses Interval |i| light(i, 6).inside(), none;
+    dpsm_classify_distance Interval
+        |i| {
+            unit(&i[..3]) && i[3].abs() <= two(62) && length(&i[4..]) <= 4.0
+        },
+        none;
+    dpsm_classify_misses Interval |i| chords(i, 0.5) && light(i, 6).inside(), none;
     dpsm_classify_part Interval |i| triangle(&i[..9]) && i[9] >= 1.0, none;
-    dpsm_classify_half Interval any, none;
-    dpsm_classify_kind Interval |i| light(i, 9).inside(), none;
+    dpsm_classify_half Interval |i| i[..9].chunks(3).all(unit), none;
+    dpsm_classify_kind Interval |i| i[..9].chunks(3).all(unit) && light(i, 9).inside(), none;
 }
 visibility {
     dpsm_lookup Absolute
@@ -498,7 +537,7 @@ kernel {
             each(0).or(each(1)).or(each(2))
         };
     dpsm_kernel_tap Absolute
-        |i| length(&i[..2]) <= 1.0 && within(&i[2..3], 0.0, 1.0) && length(&i[4..]) <= 1.0 && i[3] <= 1.0,
+        |i| on_disk(&i[..2]) && within(&i[2..3], 0.0, 1.0) && on_disk(&i[4..]) && i[3] <= 1.0,
         |_, r, a| absolute(&r[..2], &a[..2], 32.0, 1.0);
     dpsm_kernel_mirrored Absolute
         |i| {
@@ -509,15 +548,15 @@ kernel {
             };
             // r < 2 before it is mirrored
             let tap = || dpsm_kernel_tap(kernel, Vec2::new(i[4], i[5]));
-            length(&i[..2]) <= 1.0
+            on_disk(&i[..2])
                 && within(&i[2..3], 0.0, 1.0)
-                && length(&i[4..]) <= 1.0
+                && on_disk(&i[4..])
                 && i[3] <= 1.0
                 && (tap().hemisphere == kernel.hemisphere || tap().uv.length() > 0.5)
         },
         |_, r, a| absolute(&r[..2], &a[..2], 64.0, 1.0);
     dpsm_kernel_projected Absolute
-        |i| point(&i[..3], -51, 50) && within(&i[3..4], 0.0, two(10)) && length(&i[4..]) <= 1.0,
+        |i| point(&i[..3], -51, 50) && within(&i[3..4], 0.0, two(10)) && on_disk(&i[4..]),
         |_, r, a| absolute(&r[..2], &a[..2], 55.0, 1.0);
     dpsm_kernel_ring Relative |i| i[0] < i[1] && i[1] <= two(24), |_, r, a| relative(r, a, 7.5);
     dpsm_kernel_turn Absolute
@@ -531,16 +570,32 @@ filter {
     dpsm_filter_reader Relative
         |i| receiver(&i[..5]) && light(i, 5).inside() && within(&i[31..], 0.0, 1.0),
         |_, r, a| {
-            relative(&r[6..15], &a[6..15], 4.5).or(relative(&r[15..], &a[15..], 12.0))
+            exact(&r[..6], &a[..6])
+                .or(relative(&r[6..15], &a[6..15], 4.5))
+                .or(relative(&r[15..], &a[15..], 12.0))
         };
     dpsm_filter_lookup Interval
-        |i| receiver(&i[..5]) && length(&i[16..18]) <= 1.0 && light(i, 19).inside(), none;
+        |i| receiver(&i[..5]) && on_disk(&i[16..18]) && i[18] <= 1.0 && light(i, 19).inside(), none;
 }
 pcss {
     dpsm_pcss_tangent Relative
         |i| within(&i[..2], two(-51), two(62)) && within(&i[2..], 0.0, two(62)),
-        |i, r, a| relative(r, a, 6.5 + i[0] / (i[0] - i[1]).abs());
-    dpsm_pcss_found Interval any, none;
+        |i, r, a| {
+            // none at contact, where the difference is exact
+            let cancelled = if i[0] == i[1] { 0.0 } else { i[0] / (i[0] - i[1]).abs() };
+            relative(r, a, 6.5 + cancelled)
+        };
+    dpsm_pcss_found Interval
+        |i| {
+            // found, stored, at, receiver, light, radius
+            within(&i[..1], 0.0, two(62))
+                && within(&i[3..4], 0.0, 1.0)
+                && largest(&i[4..7]) <= 4.0
+                && receiver(&i[10..15])
+                && light(i, 15).inside()
+                && within(&i[39..], 0.0, two(62))
+        },
+        none;
     dpsm_pcss_width Relative
         |i| within(&i[..1], 0.0, two(62)) && i[1] <= two(24) && within(&i[3..], 0.0, two(24)),
         |_, r, a| relative(r, a, 2.5);
