@@ -76,7 +76,8 @@ fn page() -> String {
         bound; outside but finite and in range ({finite}: underflow, degenerate shapes); outside \
         ({outside}: overflow, infinity, NaN), where anything may come out, but the same kind of \
         thing, finite or not, on lavapipe and in the f32 port. tests/hard_cases.rs checks that in \
-        both ports and on the adapter, tests/big checks the f64 ports against 256 bits \
+        both ports and on the adapter, but for the bound, which tests/accuracy.rs checks where no \
+        word is subnormal; tests/big checks the f64 ports against 256 bits \
         ([numerics](numerics.md)). The columns on the right count the functions' cases of each \
         kind.\n"
     );
