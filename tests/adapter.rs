@@ -6,6 +6,7 @@
 mod common;
 
 use common::{device, rng, unit};
+use dpsm::accuracy::bits;
 use dpsm::gpu::{Evaluator, GpuError, Resources, Texels, comparison_sampler};
 use dpsm::render::Format;
 use dpsm::scalar::bias::*;
@@ -19,13 +20,6 @@ use fastrand::Rng;
 
 /// Inputs of each function.
 const INPUTS: usize = 1 << 20;
-
-fn bits(word: Word<f32>) -> u32 {
-    match word {
-        Word::Float(value) => value.to_bits(),
-        Word::Integer(value) => value,
-    }
-}
 
 #[test]
 fn ports_and_modules_declare_the_same_functions_in_the_same_order() {
