@@ -27,6 +27,8 @@ pub mod gpu;
 pub mod link;
 #[cfg(feature = "scene")]
 pub mod measure;
+#[cfg(feature = "scene")]
+pub mod plan;
 #[cfg(feature = "naga")]
 pub mod reflect;
 #[cfg(feature = "scene")]

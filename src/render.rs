@@ -9,6 +9,7 @@ mod settings;
 
 pub use error::FrameError;
 pub use extent::Extent;
+pub(crate) use extent::nearest_of;
 pub use projection::{Projection, texel};
 pub use settings::{
     Bias, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings, Taps,

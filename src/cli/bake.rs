@@ -9,7 +9,7 @@ use dpsm::scalar::maps::DepthMaps;
 
 use super::measure::{prepare, pretty};
 use super::output::{Outputs, print};
-use super::setup::SetupArguments;
+use super::setup::{Names, SetupArguments};
 use super::{AdapterChoice, CliError, describe};
 
 /// Make the maps and write them as EXR, distances in world units
@@ -54,7 +54,7 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
     let beside = path.with_extension("json");
     let light = frame.light;
     let vector = |v: dpsm::scalar::float::Vec3<f32>| [v.x, v.y, v.z];
-    let names = arguments.setup.names();
+    let names = Names::of(&frame.settings);
     let parameters = serde_json::json!({
         "scene": scene,
         "position": vector(light.position),

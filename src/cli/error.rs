@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use dpsm::gpu::GpuError;
 use dpsm::link::LinkError;
+use dpsm::plan::PlanError;
 use dpsm::render::FrameError;
 use dpsm::scene::SceneError;
 use dpsm::validate::ValidateError;
@@ -48,6 +49,9 @@ pub enum CliError {
     /// Settings that do not fit.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// No plan, or one that does not fit.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
     /// WGSL that does not link.
     #[error(transparent)]
     Link(#[from] LinkError),

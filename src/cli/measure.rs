@@ -135,7 +135,7 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         bowed_edges: measure::bowed_edges(&bench, triangles.clone()),
         affine_depth: measure::affine_depth(&bench, triangles.clone()),
     };
-    let options = arguments.setup.names();
+    let options = Names::of(&frame.settings);
     let meshes_as = match measure::draws_straight(frame.settings.method) {
         true => options.method.clone(),
         false => "vertex".to_string(),

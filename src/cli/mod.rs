@@ -7,6 +7,7 @@ mod error;
 mod eval;
 mod measure;
 mod output;
+mod plan;
 mod probe;
 mod render;
 mod search;
@@ -51,7 +52,9 @@ Examples:
   dpsm link visibility shade -o shadows.wgsl
   dpsm validate my-shader.wesl
   dpsm eval dpsm_project --input points.csv
-  dpsm measure brabec-room --walls 1 --size 512";
+  dpsm measure brabec-room --walls 1 --size 512
+  dpsm plan brabec-room --camera scene --error 0.2deg -o plan.json
+  dpsm render brabec-room --plan plan.json -o planned.png";
 
 /// Which implementation computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -75,6 +78,7 @@ enum Command {
     Bake(bake::BakeArguments),
     Probe(probe::ProbeArguments),
     Measure(measure::MeasureArguments),
+    Plan(plan::PlanArguments),
 }
 
 /// Runs the command.
@@ -90,6 +94,7 @@ pub fn run(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Bake(bake)) => bake::bake(adapter, &bake),
         Some(Command::Probe(probe)) => probe::probe(adapter, &probe),
         Some(Command::Measure(measure)) => measure::measure(adapter, &measure),
+        Some(Command::Plan(plan)) => plan::plan(&plan),
     }
 }
 

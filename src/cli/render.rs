@@ -60,7 +60,7 @@ enum LookupName {
     Vertex,
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let number = |text: &str| text.parse().map_err(|_| format!("`{text}` is not a whole number"));
     let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 960x720")?;
     Ok([number(width)?, number(height)?])

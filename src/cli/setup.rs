@@ -1,17 +1,21 @@
 //! The options that every command on a scene shares, and the frame that they make.
 
+use std::path::{Path, PathBuf};
+
 use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
+use dpsm::plan::Plan;
 use dpsm::render::{
     Bias, Filter, Format, Frame, Kernel, Level, Lookup, Method, Passes, Settings, Taps,
 };
 use dpsm::scalar::maps::{DepthMaps, Sampling};
-use dpsm::scene::{self, Light, Options};
+use dpsm::scene::{self, Light, Options, Scene};
 use dpsm::{cpu, render};
 use glam::Vec3;
 use serde::Serialize;
 
+use super::output::read_text;
 use super::{CliError, parse_vector};
 
 /// Scene, light and method.
@@ -32,6 +36,18 @@ pub struct SetupArguments {
     /// The light's main axis; by default the light's own, or down
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     axis: Option<Vec3>,
+    /// A plan that `dpsm plan -o` wrote: it says all that is said below but the camera, and the light
+    /// where --light does not
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = [
+            "hemisphere", "axis", "size", "format", "method", "tau", "level", "no_cull_faces",
+            "filter", "taps", "kernel_angle", "kernel_radius", "light_size", "nearest",
+            "linear_taps", "bias", "constant_bias", "near", "far",
+        ]
+    )]
+    plan: Option<PathBuf>,
     /// Texels along a side of a map; a cube's faces have half as many, for texels as fine
     #[arg(long, default_value_t = Settings::default().size)]
     size: u32,
@@ -200,20 +216,68 @@ pub struct Names {
     pub bias: String,
 }
 
-impl SetupArguments {
-    /// The chosen options' names.
-    pub fn names(&self) -> Names {
-        Names {
-            format: name(self.format),
-            method: name(self.method),
-            tau: self.tau,
-            level: self.level,
-            passes: name(self.passes),
-            filter: name(self.filter),
-            bias: name(self.bias),
+impl Names {
+    /// The names of a frame's settings.
+    pub fn of(settings: &Settings) -> Self {
+        let filter = match (settings.filter, settings.sampling) {
+            (Filter::Single, Sampling::Nearest) => FilterName::Hard,
+            (Filter::Single, Sampling::Linear) => FilterName::Hardware,
+            (Filter::Naive(_), _) => FilterName::Pcf,
+            (Filter::Disk(_), _) => FilterName::Disk,
+            (Filter::Mirror(_), _) => FilterName::Mirror,
+            (Filter::Reproject(_), _) => FilterName::Reproject,
+            (Filter::Soft { .. }, _) => FilterName::Pcss,
+        };
+        let level = match settings.level {
+            Level::Constant(level) => Some(level),
+            Level::Mesh(_) => None,
+        };
+        Self {
+            format: name(FormatName::of(settings.format)),
+            method: name(MethodName::of(settings.method)),
+            tau: settings.tau,
+            level,
+            passes: name(match settings.passes {
+                Passes::Single => PassesName::Single,
+                Passes::Atlas => PassesName::Atlas,
+                Passes::Multiview => PassesName::Multiview,
+            }),
+            filter: name(filter),
+            bias: name(match settings.bias {
+                Bias::Constant(_) => BiasName::Constant,
+                Bias::Footprint => BiasName::Footprint,
+                Bias::TexelCentre => BiasName::TexelCentre,
+                Bias::TexelCentreOrOwn => BiasName::TexelCentreOrOwn,
+                Bias::WithoutNormal(_) => BiasName::NoNormal,
+            }),
         }
     }
+}
 
+impl FormatName {
+    fn of(format: Format) -> Self {
+        match format {
+            Format::D16 => Self::D16,
+            Format::D24 => Self::D24,
+            Format::D32 => Self::D32,
+        }
+    }
+}
+
+impl MethodName {
+    fn of(method: Method) -> Self {
+        match method {
+            Method::Vertex => Self::Vertex,
+            Method::FragmentDepth => Self::FragmentDepth,
+            Method::Tessellated => Self::Tessellated,
+            Method::Exact => Self::Exact,
+            Method::Hybrid => Self::Hybrid,
+            Method::Cube => Self::Cube,
+        }
+    }
+}
+
+impl SetupArguments {
     /// The filter that is asked for.
     fn filter(&self) -> Result<Filter, CliError> {
         let kernel = match (self.kernel_angle, self.kernel_radius) {
@@ -312,20 +376,28 @@ impl SetupArguments {
             views,
             ..Settings::default()
         };
-        let scene = scene::open(&self.scene, &Options { walls: self.walls })?;
-        for warning in &scene.warnings {
-            eprintln!("dpsm: {warning}");
-        }
+        let scene = open(&self.scene, self.walls)?;
+        let plan = self.plan.as_deref().map(|path| planned(path, &scene)).transpose()?;
+        let settings = match &plan {
+            Some(plan) => plan.settings(&settings)?,
+            None => settings,
+        };
         let mut light = scene.default_light();
-        match self.light {
+        let light_of_plan = plan.as_ref().and_then(|plan| plan.lights.first());
+        match self.light.or(light_of_plan.map(|light| Vec3::from_array(*light))) {
             Some(position) => light = Light { position, axis: None, ..light },
             None if scene.lights.len() > 1 => {
                 eprintln!("dpsm: the scene has {} lights; using the first", scene.lights.len());
             }
             None => {}
         }
-        let hemispherical = self.hemisphere || light.axis.is_some();
-        let axis = self.axis.or(light.axis).unwrap_or(Vec3::NEG_Y);
+        let (axis, hemispherical) = match &plan {
+            Some(plan) => (Vec3::from_array(plan.axis), plan.is_hemispherical()),
+            None => (
+                self.axis.or(light.axis).unwrap_or(Vec3::NEG_Y),
+                self.hemisphere || light.axis.is_some(),
+            ),
+        };
         let mut camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
         camera.eye = self.camera.unwrap_or(camera.eye);
         camera.target = self.look_at.unwrap_or(camera.target);
@@ -337,6 +409,25 @@ impl SetupArguments {
         let frame = frame.with_lights(more?.into_iter().map(|frame| frame.light))?;
         Ok((scene.name, Frame { color: light.color, ..frame }))
     }
+}
+
+/// Opens a scene; its warnings go to stderr.
+pub fn open(name: &str, walls: u32) -> Result<Scene, CliError> {
+    let scene = scene::open(name, &Options { walls })?;
+    for warning in &scene.warnings {
+        eprintln!("dpsm: {warning}");
+    }
+    Ok(scene)
+}
+
+/// Reads a plan, which must be this scene's.
+fn planned(path: &Path, scene: &Scene) -> Result<Plan, CliError> {
+    let plan: Plan = serde_json::from_str(&read_text(path)?).map_err(|error| {
+        let path = path.display();
+        CliError::Usage(format!("{path} is no plan: {error}; make one with `dpsm plan -o {path}`"))
+    })?;
+    plan.check(scene)?;
+    Ok(plan)
 }
 
 fn name(value: impl ValueEnum) -> String {

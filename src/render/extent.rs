@@ -122,7 +122,7 @@ const LEVEL_TAU: f32 = 0.5;
 
 /// Distance of a triangle's nearest point from the origin: the foot of the plane's normal where it
 /// lies inside, else the nearest point of an edge.
-fn nearest_of([a, b, c]: [DVec3; 3]) -> f64 {
+pub(crate) fn nearest_of([a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
     let inside = |p: DVec3, q: DVec3| p.cross(q).dot(normal);
     let sides = [inside(a, b), inside(b, c), inside(c, a)];

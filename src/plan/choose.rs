@@ -1,0 +1,246 @@
+//! The cheapest size, format, method and filter that an axis allows.
+
+use super::Sample;
+use super::axis::Axis;
+use super::cost::{Rates, generation};
+use crate::render::{Format, Method, depth_tolerance, guard_band};
+use crate::scalar::bias::{
+    DPSM_RECEIVER_ROUNDING, dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver,
+};
+use crate::scalar::float::{self as scalar, Vec2};
+use crate::scalar::light::DpsmLight;
+use crate::scalar::maps::Sampling;
+
+/// How far from its own texel's centre a point may be, in texels: half a diagonal. Of 2 x 2 texels
+/// compared together, those on the wrong side of a straight edge outweigh the others only within
+/// half a texel of it (docs/plan.md).
+const HARD_REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const HARDWARE_REACH: f64 = 0.5;
+
+/// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
+/// a gap to be forgiven.
+const FINER: f64 = 2.0;
+
+/// Sizes per octave.
+const SIZES: u32 = 32;
+
+/// Smallest map.
+pub const LEAST_SIZE: u32 = 16;
+
+/// Largest map: WebGPU's limit without asking for more.
+pub const MOST_SIZE: u32 = 8192;
+
+/// Hybrid maps whose distances must be this much finer than usual are drawn exactly: nearly all
+/// of their triangles would be.
+const EXACT_BELOW: f64 = 1.0 / 8.0;
+
+/// A way to make and read maps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Index of the axis.
+    pub axis: usize,
+    /// Texels along a side.
+    pub size: u32,
+    /// Storage.
+    pub format: Format,
+    /// Hybrid or exact.
+    pub method: Method,
+    /// Relative error of distances that the hybrid method is allowed.
+    pub tolerance: f32,
+    /// Hard test or 2 x 2.
+    pub sampling: Sampling,
+    /// Making the maps, ms.
+    pub generation: f64,
+    /// Reading them for all pixels, ms.
+    pub lookup: f64,
+    /// Bytes of all maps.
+    pub bytes: u64,
+    /// Predicted error as a share of the target.
+    pub share: f64,
+}
+
+impl Candidate {
+    /// What it costs.
+    pub fn cost(&self) -> f64 {
+        self.generation + self.lookup
+    }
+
+    /// By cost, and of what costs the same by memory.
+    pub fn order(&self, other: &Self) -> std::cmp::Ordering {
+        self.cost().total_cmp(&other.cost()).then(self.bytes.cmp(&other.bytes))
+    }
+}
+
+/// What candidates are made for.
+pub struct Case<'a> {
+    /// Receivers of all lights.
+    pub samples: &'a [Sample],
+    /// Near and far sphere's radii.
+    pub spheres: [f32; 2],
+    /// Triangles that are sorted.
+    pub sorted: usize,
+    /// Pixels that look.
+    pub pixels: u64,
+    /// What steps cost.
+    pub rates: &'a Rates,
+    /// How far an edge may be drawn from its place, in texels.
+    pub tau: f64,
+}
+
+/// Bytes of a texel.
+pub fn texel_bytes(format: Format) -> u64 {
+    match format {
+        Format::D16 => 2,
+        Format::D24 | Format::D32 => 4,
+    }
+}
+
+/// The smallest size of the ladder that is at least `size`.
+pub fn ladder(size: f64) -> u32 {
+    let size = size.clamp(f64::from(LEAST_SIZE), f64::from(MOST_SIZE)).ceil() as u32;
+    size.next_multiple_of(step(size)).min(MOST_SIZE)
+}
+
+/// The largest size of the ladder that is at most `size`; `None` below the smallest.
+pub fn ladder_below(size: f64) -> Option<u32> {
+    let size = size.min(f64::from(MOST_SIZE)) as u32;
+    (size >= LEAST_SIZE).then(|| size - size % step(size))
+}
+
+/// From one size of the ladder to the next.
+fn step(size: u32) -> u32 {
+    ((1 << size.ilog2()) / SIZES).max(8)
+}
+
+impl Case<'_> {
+    /// How many texels a lookup may be off.
+    pub fn reach(&self, sampling: Sampling) -> f64 {
+        self.tau
+            + match sampling {
+                Sampling::Nearest => HARD_REACH,
+                Sampling::Linear => HARDWARE_REACH,
+            }
+    }
+
+    /// The size that the shadow edges ask for.
+    pub fn edge_size(&self, axis: &Axis, sampling: Sampling) -> f64 {
+        let plain = axis.demand * self.reach(sampling);
+        // the guard band is part of the side
+        plain * f64::from(1.0 + guard_band(plain.clamp(1.0, f64::from(MOST_SIZE)) as u32))
+    }
+
+    /// All candidates of an axis, from the size that the edges ask for upwards.
+    pub fn candidates(&self, index: usize, axis: &Axis) -> Vec<Candidate> {
+        let mut found = Vec::new();
+        for sampling in [Sampling::Nearest, Sampling::Linear] {
+            let least = ladder(self.edge_size(axis, sampling));
+            let most = (f64::from(least) * FINER).min(f64::from(MOST_SIZE)) as u32;
+            for format in [Format::D16, Format::D32] {
+                let mut size = least;
+                while size <= most {
+                    found.push(self.candidate(index, axis, size, format, sampling));
+                    size += step(size);
+                }
+            }
+        }
+        found
+    }
+
+    /// One candidate, whatever its error.
+    pub fn candidate(
+        &self,
+        index: usize,
+        axis: &Axis,
+        size: u32,
+        format: Format,
+        sampling: Sampling,
+    ) -> Candidate {
+        let usual = f64::from(depth_tolerance(size));
+        let (room, gap_share) = self.gaps(axis, size, format, sampling);
+        let (method, tolerance) = match room {
+            room if room >= usual => (Method::Hybrid, usual),
+            room if room >= usual * EXACT_BELOW => (Method::Hybrid, room),
+            _ => (Method::Exact, 0.0),
+        };
+        let edge_share = self.edge_size(axis, sampling) / f64::from(size);
+        let maps = u64::from(axis.maps);
+        Candidate {
+            axis: index,
+            size,
+            format,
+            method,
+            tolerance: tolerance as f32,
+            sampling,
+            generation: generation(self.rates, &axis.loads, self.sorted, size),
+            lookup: self.pixels as f64
+                * match sampling {
+                    Sampling::Nearest => self.rates.hard,
+                    Sampling::Linear => self.rates.hardware,
+                },
+            bytes: maps * u64::from(size) * u64::from(size) * texel_bytes(format),
+            share: edge_share.max(gap_share),
+        }
+    }
+
+    /// The relative error of distances that the gaps leave for the method, and the error as a
+    /// share of the target where exact maps forgive a gap that must hold.
+    fn gaps(&self, axis: &Axis, size: u32, format: Format, sampling: Sampling) -> (f64, f64) {
+        let light = self.light(size);
+        let range = light.far - light.near;
+        let quantum = f64::from(format.quantum());
+        let (mut room, mut share) = (f64::INFINITY, 0.0_f64);
+        for sample in self.samples.iter().filter(|sample| sample.gap[0].is_finite()) {
+            let cosine = sample.direction.dot(axis.axis);
+            let pitch = 2.0 * (1.0 + cosine.abs()) * (1.0 + light.guard) / light.size;
+            let reach = self.reach(sampling) * pitch;
+            let gap = sample.gap_within(reach);
+            let l = sample.distance;
+            let lean = DPSM_RECEIVER_ROUNDING * l / sample.incidence().max(f64::MIN_POSITIVE);
+            // what is stored may be the neighbour above
+            let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range + lean;
+            let window = match sampling {
+                Sampling::Nearest => 0.0,
+                Sampling::Linear => 2.0 * range * footprint(sample, cosine, &light),
+            };
+            let left = gap - slack - window;
+            if left <= 0.0 {
+                share = share.max(sample.edge / sample.allowed);
+            }
+            room = room.min(left / (2.0 * l));
+        }
+        (room, share)
+    }
+
+    /// A light with maps of a size, as the biases need it.
+    fn light(&self, size: u32) -> DpsmLight<f64> {
+        let [near, far] = self.spheres.map(f64::from);
+        let none = scalar::Vec3::splat(0.0);
+        DpsmLight {
+            position: none,
+            near,
+            right: none,
+            far,
+            up: none,
+            guard: f64::from(guard_band(size)),
+            forward: none,
+            size: f64::from(size),
+            rectangle: scalar::Vec4::new(0.0, 0.0, 1.0, 1.0),
+            first_layer: 0,
+            placement: 0,
+            hemispheres: 2,
+            padding: 0,
+        }
+    }
+}
+
+/// The footprint's bias of a sample whose direction has a cosine with the axis.
+fn footprint(sample: &Sample, cosine: f64, light: &DpsmLight<f64>) -> f64 {
+    // only the distance from the axis counts, and the incidence
+    let c = cosine.abs().min(1.0);
+    let r = ((1.0 - c) / (1.0 + c)).sqrt();
+    let incidence = sample.incidence();
+    let l = sample.distance;
+    let p = scalar::Vec3::new(0.0, 0.0, l);
+    let normal = scalar::Vec3::new((1.0 - incidence * incidence).sqrt(), 0.0, incidence);
+    dpsm_bias_footprint(dpsm_receiver(p, normal), Vec2::new(r, 0.0), 1.0, *light)
+}

@@ -1,0 +1,99 @@
+//! A plan put to the proof: how far points that a frame's maps light wrongly are from the true
+//! shadow edge.
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::{Sight, Target};
+use crate::measure::{Bench, Point};
+
+/// Azimuths in which an edge is looked for: the nearest is at most 1 / cos(pi / 64) as far as in
+/// the best direction, 0.12%.
+const AZIMUTHS: u32 = 64;
+
+/// Rings, in allowed angles: the first that meets an edge ends the search.
+const RINGS: [f64; 9] = [0.125, 0.25, 0.5, 0.7, 0.85, 1.0, 1.25, 2.0, 8.0];
+
+/// Error of a point with no edge within the widest ring.
+const NO_EDGE: f64 = 8.0;
+
+/// Points, and the truth about them, for any number of frames with the same light.
+#[derive(Debug)]
+pub struct Proof<'a> {
+    sight: Sight<'a>,
+    target: Target,
+    points: Vec<Point>,
+    lit: Vec<bool>,
+    edges: Vec<OnceLock<f64>>,
+}
+
+/// The points that a frame lights wrongly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrong {
+    /// Points.
+    pub points: usize,
+    /// Wrong ones.
+    pub wrong: usize,
+    /// Those beyond the target.
+    pub beyond: usize,
+    /// The largest distance from the true edge, as a share of the target.
+    pub share: f64,
+    /// Where.
+    pub place: Option<DVec3>,
+}
+
+impl<'a> Proof<'a> {
+    /// Casts a ray to each point.
+    pub fn new(sight: Sight<'a>, target: Target, points: Vec<Point>) -> Self {
+        let lit = points.par_iter().map(|point| sight.is_lit(point)).collect();
+        let edges = points.iter().map(|_| OnceLock::new()).collect();
+        Self { sight, target, points, lit, edges }
+    }
+
+    /// The points.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Judges a frame's maps.
+    pub fn wrong(&self, bench: &Bench<'_>) -> Wrong {
+        let all = 0..self.points.len();
+        let found = all.into_par_iter().filter_map(|index| self.is_wrong(bench, index));
+        let mut wrong = Wrong { points: self.points.len(), ..Wrong::default() };
+        for (index, share) in found.collect::<Vec<_>>() {
+            wrong.wrong += 1;
+            wrong.beyond += usize::from(share > 1.0);
+            if share > wrong.share {
+                wrong.share = share;
+                wrong.place = Some(self.points[index].world);
+            }
+        }
+        wrong
+    }
+
+    /// True where no point that the maps light wrongly is farther from the true edge than the
+    /// target; as `wrong`, but ends with the first that is.
+    pub fn holds(&self, bench: &Bench<'_>) -> bool {
+        let all = 0..self.points.len();
+        !all.into_par_iter()
+            .any(|index| self.is_wrong(bench, index).is_some_and(|(_, share)| share > 1.0))
+    }
+
+    fn is_wrong(&self, bench: &Bench<'_>, index: usize) -> Option<(usize, f64)> {
+        let point = &self.points[index];
+        let (map, _) = bench.place(point);
+        let mapped = map < bench.frame.light.hemispheres;
+        let shown = mapped && bench.visibility(point) >= 0.5;
+        (shown != self.lit[index])
+            .then(|| (index, *self.edges[index].get_or_init(|| self.edge(point))))
+    }
+
+    /// The distance from the true edge as a share of the target.
+    fn edge(&self, point: &Point) -> f64 {
+        let allowed = self.target.angle((point.world - self.sight.origin).length());
+        let rings = RINGS.map(|ring| ring * allowed);
+        (self.sight.edge(point, &rings, AZIMUTHS) / allowed).min(NO_EDGE)
+    }
+}

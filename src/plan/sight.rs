@@ -1,0 +1,182 @@
+//! What a light reaches: shadow edges and gaps around the points that are to be lit.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Target;
+use crate::measure::Point;
+use crate::truth::Truth;
+
+/// A light among a scene's triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<'a> {
+    /// The scene's triangles.
+    pub truth: &'a Truth,
+    /// The light's world position.
+    pub origin: DVec3,
+}
+
+/// What a light makes of a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Along {
+    /// It reaches the receiver's plane.
+    Lit,
+    /// Something keeps it from the plane, so far in front of it.
+    Dark(f64),
+    /// It misses the plane.
+    Beyond,
+}
+
+/// A receiver, and how well a map must know what is around it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Unit direction from the light, world space.
+    pub direction: DVec3,
+    /// Distance from the light.
+    pub distance: f64,
+    /// Unit normal; zero where it is not known.
+    pub normal: DVec3,
+    /// The angle that the target allows at this distance.
+    pub allowed: f64,
+    /// The angle by which a map may miss the point's direction without lighting it wrongly beyond
+    /// the target: `allowed` beside a shadow edge, more where none is near.
+    pub room: f64,
+    /// The angle to the nearest shadow edge; infinite where none is near.
+    pub edge: f64,
+    /// Distance from the plane to what shadows it: at the point, and the least around it at the
+    /// allowed angle. Infinite for a lit point, and where an edge is so near that the target
+    /// forgives its light.
+    pub gap: [f64; 2],
+}
+
+/// Azimuths in which a plan looks for edges, and how far, in allowed angles: a ring near enough to
+/// meet what is narrow, and one wide enough to know many points beside each edge.
+const AZIMUTHS: u32 = 8;
+const RINGS: [f64; 2] = [1.0, 4.0];
+
+/// Halvings of the gap between two rings: the edge is found to 1/64 of it.
+const HALVINGS: u32 = 6;
+
+impl Sample {
+    /// The least gap within an angle, at most the allowed one: between the two that are known.
+    pub fn gap_within(&self, angle: f64) -> f64 {
+        let [own, around] = self.gap;
+        own + (around - own) * (angle / self.allowed).min(1.0)
+    }
+
+    /// The cosine of the incidence; 1 for a point without a normal.
+    pub fn incidence(&self) -> f64 {
+        match self.normal == DVec3::ZERO {
+            true => 1.0,
+            false => self.direction.dot(self.normal).abs().min(1.0),
+        }
+    }
+}
+
+impl Sight<'_> {
+    /// Samples of the points that the light may reach.
+    pub fn samples(&self, points: &[Point], target: Target) -> Vec<Sample> {
+        points.par_iter().filter_map(|point| self.sample(point, target)).collect()
+    }
+
+    fn sample(&self, point: &Point, target: Target) -> Option<Sample> {
+        let to_point = point.world - self.origin;
+        let distance = to_point.length();
+        let direction = to_point.try_normalize()?;
+        let allowed = target.angle(distance);
+        let rings = RINGS.map(|ring| ring * allowed);
+        let edge = self.edge(point, &rings, AZIMUTHS);
+        let gap = match edge > allowed {
+            true => self.gap(point, direction, allowed),
+            false => [f64::INFINITY; 2],
+        };
+        Some(Sample {
+            direction,
+            distance,
+            normal: point.normal.unwrap_or_default(),
+            allowed,
+            room: if edge.is_finite() { allowed } else { rings[1] },
+            edge,
+            gap,
+        })
+    }
+
+    /// The angle from a point to the nearest place where its plane's light changes, or the plane
+    /// ends; infinite beyond the widest ring. Rings ascend.
+    pub fn edge(&self, point: &Point, rings: &[f64], azimuths: u32) -> f64 {
+        let Some(axis) = (point.world - self.origin).try_normalize() else { return 0.0 };
+        let lit = self.is_lit(point);
+        let differs = |azimuth: f64, angle: f64| {
+            let along = self.along(point, turned(axis, azimuth, angle));
+            if lit { along != Along::Lit } else { !matches!(along, Along::Dark(_)) }
+        };
+        let mut inner = 0.0;
+        for &outer in rings {
+            let found = (0..azimuths)
+                .map(|k| TAU * f64::from(k) / f64::from(azimuths))
+                .filter(|&azimuth| differs(azimuth, outer))
+                .map(|azimuth| {
+                    let (mut same, mut other) = (inner, outer);
+                    for _ in 0..HALVINGS {
+                        let middle = 0.5 * (same + other);
+                        match differs(azimuth, middle) {
+                            true => other = middle,
+                            false => same = middle,
+                        }
+                    }
+                    other
+                })
+                .min_by(f64::total_cmp);
+            if let Some(found) = found {
+                return found;
+            }
+            inner = outer;
+        }
+        f64::INFINITY
+    }
+
+    /// True where nothing keeps the light from a point.
+    pub fn is_lit(&self, point: &Point) -> bool {
+        self.truth.occluder(self.origin, point.world, point.triangle, 0.0).is_none()
+    }
+
+    /// The gap of a shadowed point, and the least of its plane around it.
+    fn gap(&self, point: &Point, direction: DVec3, angle: f64) -> [f64; 2] {
+        let Along::Dark(own) = self.along(point, direction) else { return [f64::INFINITY; 2] };
+        let around = (0..AZIMUTHS).map(|k| TAU * f64::from(k) / f64::from(AZIMUTHS));
+        let least = around.fold(own, |least, azimuth| {
+            match self.along(point, turned(direction, azimuth, angle)) {
+                Along::Dark(gap) => least.min(gap),
+                _ => least,
+            }
+        });
+        [own, least]
+    }
+
+    /// What a unit direction of the light meets of a point's plane; without a normal the plane is a
+    /// sphere around the light.
+    fn along(&self, point: &Point, direction: DVec3) -> Along {
+        let to_point = point.world - self.origin;
+        let distance = match point.normal {
+            Some(normal) => normal.dot(to_point) / normal.dot(direction),
+            None => to_point.length(),
+        };
+        if !(distance.is_finite() && distance > 0.0) {
+            return Along::Beyond;
+        }
+        let there = self.origin + direction * distance;
+        match self.truth.occluder(self.origin, there, point.triangle, 0.0) {
+            Some(hit) => Along::Dark(distance - hit.distance),
+            None => Along::Lit,
+        }
+    }
+}
+
+/// The unit direction at an angle from a unit axis.
+fn turned(axis: DVec3, azimuth: f64, angle: f64) -> DVec3 {
+    let (side, other) = axis.any_orthonormal_pair();
+    let (sin, cos) = azimuth.sin_cos();
+    axis * angle.cos() + (side * cos + other * sin) * angle.sin()
+}
