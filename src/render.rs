@@ -9,11 +9,11 @@ mod settings;
 
 pub use error::FrameError;
 pub use extent::Extent;
-pub(crate) use extent::nearest_of;
+pub(crate) use extent::{common, nearest_of};
 pub use projection::{Projection, texel};
 pub use settings::{
-    Bias, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings, Taps,
-    constant_bias, depth_tolerance,
+    Bias, Casting, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings,
+    Taps, constant_bias, depth_tolerance,
 };
 
 use std::ops::Range;
@@ -80,6 +80,9 @@ pub struct Frame {
     pub meshes: Vec<(String, Range<u32>)>,
     /// Triangles and mask of each masked mesh, in the triangles' order.
     pub masks: Vec<(Range<u32>, Mask)>,
+    /// Triangles of each mesh and what it is in the maps, in the triangles' order; empty where all
+    /// are drawn by the settings' method.
+    pub castings: Vec<(Range<u32>, Casting)>,
     /// The light.
     pub light: DpsmLight<f32>,
     /// More lights, which the lit image takes the mean of with the first; views, maps and measures
@@ -146,7 +149,9 @@ impl Frame {
         camera: &Camera,
         settings: Settings,
     ) -> Result<Self, FrameError> {
-        let Meshes { vertices, triangles, meshes, masks } = Meshes::gather(&scene.meshes)?;
+        settings.check_casting(&scene.meshes)?;
+        let Meshes { vertices, triangles, meshes, masks, castings } =
+            Meshes::gather(&scene.meshes, &settings.casting)?;
         check("the light's position", position)?;
         if !axis.is_finite() || axis.as_dvec3().try_normalize().is_none() {
             return Err(FrameError::Axis(axis));
@@ -214,7 +219,19 @@ impl Frame {
         let view = View::new(camera, settings.image)?;
         let color = Vec3::ONE;
         let more = Vec::new();
-        Ok(Self { vertices, triangles, meshes, masks, light, more, color, bias, view, settings })
+        Ok(Self {
+            vertices,
+            triangles,
+            meshes,
+            masks,
+            castings,
+            light,
+            more,
+            color,
+            bias,
+            view,
+            settings,
+        })
     }
 }
 

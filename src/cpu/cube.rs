@@ -11,7 +11,8 @@ pub fn map_pass(frame: &Frame, face: u32, layer: &mut [f32]) {
     let Frame { light, settings, .. } = frame;
     let size = settings.map_size();
     let (places, clip) = placed(frame, face);
-    for (index, corners) in (0..).zip(&frame.triangles) {
+    for index in frame.drawn().into_iter().flat_map(|(triangles, _)| triangles) {
+        let corners = frame.triangles[index as usize];
         let [a, b, c] = corners.map(|corner| places[corner as usize]);
         if settings.cull_faces && dpsm_cube_outside(a, b, c, face, light.guard) {
             continue;

@@ -1,7 +1,9 @@
 //! The map passes of the paraboloid methods.
 
+use std::ops::Range;
+
 use super::{mix, opaque, pick, triangle, vector, words};
-use crate::render::{Frame, FrameError, Method, Vertex, float};
+use crate::render::{Frame, FrameError, Method, Projection, Vertex, common, float};
 use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
 use crate::scalar::classify::{
     DPSM_CULLED, DPSM_CURVED, DPSM_FLAT, DPSM_IN_BACK, DPSM_IN_FRONT, DPSM_LARGE, DPSM_STEEP,
@@ -23,14 +25,21 @@ const NO_BIAS: f32 = 0.0;
 /// Paths of more halvings than this are given up for a hull around the whole map.
 const DEEPEST: u32 = 1 << 24;
 
-/// One map: stored depths of all casters.
+/// One map: stored depths of all casters, each by its method.
 pub fn map_pass(frame: &Frame, map: u32, layer: &mut [f32]) -> Result<(), FrameError> {
+    if frame.settings.method.projection() == Projection::Cube {
+        super::cube::map_pass(frame, map, layer);
+        return Ok(());
+    }
     let mut target = Target { frame, map, layer };
-    match frame.settings.method {
-        Method::Vertex | Method::FragmentDepth => target.straight(),
-        Method::Tessellated => target.tessellated()?,
-        Method::Exact | Method::Hybrid => target.sorted(),
-        Method::Cube => super::cube::map_pass(frame, map, target.layer),
+    for (triangles, method) in frame.drawn() {
+        match method {
+            Method::Vertex | Method::FragmentDepth => target.straight(triangles, method),
+            Method::Tessellated => target.tessellated(triangles)?,
+            Method::Exact | Method::Hybrid => target.sorted(triangles, method),
+            // `Frame::new` lets none in
+            Method::Cube => {}
+        }
     }
     Ok(())
 }
@@ -54,18 +63,19 @@ impl Target<'_> {
     }
 
     /// Brabec's method and the blog's: straight edges between the vertices.
-    fn straight(&mut self) {
+    fn straight(&mut self, triangles: Range<u32>, method: Method) {
         let Frame { light, settings, .. } = self.frame;
         let place = |vertex: &Vertex| {
             let p = self.place(vertex);
             (p, dpsm_caster_vertex(p, *light, NO_BIAS))
         };
         let placed: Vec<_> = self.frame.vertices.iter().map(place).collect();
-        for (index, corners) in (0..).zip(&self.frame.triangles) {
+        for index in triangles {
+            let corners = &self.frame.triangles[index as usize];
             let Some(corners) = pick(&placed, *corners) else { continue };
             let clip = corners.map(|(_, vertex)| vertex.clip);
             triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
-                let (keep, depth) = if settings.method == Method::Vertex {
+                let (keep, depth) = if method == Method::Vertex {
                     let value = |(_, vertex): (_, crate::scalar::caster::DpsmCasterVertex<f32>)| {
                         [vertex.hemisphere_value]
                     };
@@ -84,15 +94,15 @@ impl Target<'_> {
     }
 
     /// Brabec's method on subdivided triangles.
-    fn tessellated(&mut self) -> Result<(), FrameError> {
+    fn tessellated(&mut self, triangles: Range<u32>) -> Result<(), FrameError> {
         let Frame { light, settings, .. } = self.frame;
-        let extents = self.frame.extents();
+        let extents = self.frame.tessellated();
         let levels = self.frame.levels(&extents, light)?;
         for (extent, level) in extents.into_iter().zip(levels) {
             if !extent.is_seen(light, Some(self.map)) {
                 continue;
             }
-            for index in extent.triangles {
+            for index in common(&extent.triangles, &triangles) {
                 let corners = self.frame.triangles[index as usize];
                 let Some(corners) = pick(&self.frame.vertices, corners) else { continue };
                 let [a, b, c] = corners.map(|vertex| float(vertex.position));
@@ -123,13 +133,14 @@ impl Target<'_> {
     }
 
     /// The exact and hybrid methods: as classify.wesl sorts and caster.wesl draws.
-    fn sorted(&mut self) {
+    fn sorted(&mut self, triangles: Range<u32>, method: Method) {
         let Frame { light, settings, .. } = self.frame;
-        let [tau, depth_tolerance] = settings.tolerances();
+        let [tau, depth_tolerance] = settings.tolerances_of(method);
         let bit = if self.map == DPSM_FRONT { DPSM_IN_FRONT } else { DPSM_IN_BACK };
         let place = |vertex: &Vertex| dpsm_to_light(float(vertex.position), *light);
         let placed: Vec<_> = self.frame.vertices.iter().map(place).collect();
-        for (index, corners) in (0..).zip(&self.frame.triangles) {
+        for index in triangles {
+            let corners = &self.frame.triangles[index as usize];
             let Some([a, b, c]) = pick(&placed, *corners) else { continue };
             let found = dpsm_classify(a, b, c, *light, tau, depth_tolerance);
             if found.kind == DPSM_CULLED || found.hemispheres & bit == 0 {

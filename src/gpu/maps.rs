@@ -16,7 +16,7 @@ use super::passes::{
 };
 use super::texels::Texels;
 use super::{Device, GpuError};
-use crate::render::{Format, Frame, Method, Passes};
+use crate::render::{Extent, Format, Frame, Method, Passes, Settings};
 use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DpsmLight};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scalar::paraboloid::dpsm_texel_width;
@@ -30,18 +30,29 @@ pub struct ShadowMaps {
     pub view: wgpu::TextureView,
     /// The lights, with the place of their maps filled in.
     pub lights: Vec<DpsmLight<f32>>,
-    method: Method,
-    levels: Vec<Vec<u32>>,
+    /// Of each light, the tessellated meshes and their levels.
+    levels: Vec<Vec<(Extent, u32)>>,
     /// Views of each light's passes, and what each pass draws into.
     views: Vec<u32>,
     targets: Vec<wgpu::TextureView>,
-    chunks: Vec<Range<u32>>,
-    passes: Vec<MapPass>,
+    chunks: Vec<Chunk>,
+    /// Chunks that are drawn in the same passes.
+    batches: Vec<Range<usize>>,
+    uniforms: Vec<MapPass>,
     sorter: Option<Sorter>,
-    /// One for each light and chunk where they are kept, else one.
+    /// One for each light and batch where they are kept, else one.
     sets: Vec<Set>,
-    /// By the number of views in a pass.
-    pipelines: BTreeMap<u32, Vec<wgpu::RenderPipeline>>,
+    /// By the number of views in a pass, and by method.
+    pipelines: BTreeMap<(u32, Method), Vec<wgpu::RenderPipeline>>,
+}
+
+/// Triangles that are drawn at once.
+#[derive(Clone, Debug)]
+struct Chunk {
+    triangles: Range<u32>,
+    method: Method,
+    /// They are sorted into lists first.
+    is_sorted: bool,
 }
 
 /// Lists and what binds them.
@@ -69,7 +80,8 @@ impl ShadowMaps {
         Self::with_lights(device, frame, mesh, &[frame.light])
     }
 
-    /// Maps for several lights in one texture; all have the size of the frame's.
+    /// Maps for several lights in one texture; all have the size of the frame's. `mesh` holds the
+    /// triangles of a frame with the same castings.
     pub fn with_lights(
         device: &Device,
         frame: &Frame,
@@ -92,41 +104,34 @@ impl ShadowMaps {
         lights: &[DpsmLight<f32>],
     ) -> Result<Self, GpuError> {
         let settings = &frame.settings;
-        let method = settings.method;
         let views = views(device, lights, settings.passes)?;
         let (lights, side) = placed(lights, settings.passes);
         let layers = lights.iter().map(layers_of).sum();
         let size = settings.map_size();
         let texture =
             depth_texture(device, [size * side, size], layers, settings.format.texture())?;
-        let by = match method {
-            Method::Exact | Method::Hybrid => Some(By::Class),
-            Method::Cube if settings.cull_faces => Some(By::Face),
-            _ => None,
-        };
-        let capacity = match by {
-            Some(_) => Lists::chunk(device, mesh.triangles),
-            None => mesh.triangles.max(1),
-        };
-        let chunk = |i: u32| i * capacity..((i + 1) * capacity).min(mesh.triangles);
-        let chunks: Vec<_> = (0..mesh.triangles.div_ceil(capacity).max(1)).map(chunk).collect();
+        let drawn = frame.drawn();
+        let by = drawn.iter().find_map(|(_, method)| sorted_by(*method, settings));
+        let capacity = capacity(device, settings, &drawn);
+        let chunks = chunks(settings, drawn, capacity);
+        let batches = batches(&chunks);
         let room = [capacity, Lists::extra(device)];
-        let passes = passes(frame, mesh, &lights, &chunks, room);
-        let levels = match method {
-            Method::Tessellated => lights
-                .iter()
-                .map(|light| frame.levels(&mesh.meshes, light))
-                .collect::<Result<_, _>>()?,
-            _ => Vec::new(),
+        let uniforms = uniforms(frame, mesh, &lights, &chunks, room);
+        let tessellated = frame.tessellated();
+        let levels = |light| {
+            let levels = frame.levels(&tessellated, light)?;
+            Ok(tessellated.iter().cloned().zip(levels).collect())
         };
-        let mut bytes = vec![0u8; passes.len() * PASS_BYTES];
-        for (pass, bytes) in passes.iter().zip(bytes.chunks_mut(PASS_BYTES)) {
+        let levels = lights.iter().map(levels).collect::<Result<_, GpuError>>()?;
+        // with nothing to draw, as large as can be bound
+        let mut bytes = vec![0u8; uniforms.len().max(1) * PASS_BYTES];
+        for (pass, bytes) in uniforms.iter().zip(bytes.chunks_mut(PASS_BYTES)) {
             bytes[..size_of::<MapPass>()].copy_from_slice(bytemuck::bytes_of(pass));
         }
-        let uniforms = device.upload("map uniform bytes", &bytes, wgpu::BufferUsages::UNIFORM)?;
+        let buffer = device.upload("map uniform bytes", &bytes, wgpu::BufferUsages::UNIFORM)?;
         let uniform = || {
             wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &uniforms,
+                buffer: &buffer,
                 offset: 0,
                 size: wgpu::BufferSize::new(size_of::<MapPass>() as u64),
             })
@@ -134,13 +139,15 @@ impl ShadowMaps {
         let layout = map_bindings(device)?;
         let mut by_views = BTreeMap::new();
         for &views in &views {
-            if let Entry::Vacant(vacant) = by_views.entry(views) {
-                vacant.insert(pipelines(device, &layout, method, settings.format, views)?);
+            for &Chunk { method, .. } in &chunks {
+                if let Entry::Vacant(vacant) = by_views.entry((views, method)) {
+                    vacant.insert(pipelines(device, &layout, method, settings.format, views)?);
+                }
             }
         }
         let sorter = by.map(|by| Sorter::new(device, by)).transpose()?;
         let kept =
-            if settings.keep_lists && by.is_some() { lights.len() * chunks.len() } else { 1 };
+            if settings.keep_lists && by.is_some() { lights.len() * batches.len() } else { 1 };
         let set = |_| {
             let lists = Lists::new(device, by, capacity)?;
             let [positions, indices, entries, records, surfaces, masks, planes] = [
@@ -176,12 +183,12 @@ impl ShadowMaps {
             texture,
             view,
             lights,
-            method,
             levels,
             views,
             targets,
             chunks,
-            passes,
+            batches,
+            uniforms,
             sorter,
             sets,
             pipelines: by_views,
@@ -191,6 +198,13 @@ impl ShadowMaps {
     /// Number of maps of the first light.
     pub fn hemispheres(&self) -> u32 {
         self.lights.first().map_or(0, |light| light.hemispheres)
+    }
+
+    /// Render passes that one recording begins: for each light one a map, or one in all where its
+    /// maps share one; that many again for each list of triangles beyond the first, where there are
+    /// more than fit at once or where some are drawn `Exact` and some `Hybrid`.
+    pub fn passes(&self) -> usize {
+        self.targets.len() * self.batches.len()
     }
 
     /// Reads the stored depths of the first light's maps back, a layer a map.
@@ -239,22 +253,69 @@ fn placed(lights: &[DpsmLight<f32>], passes: Passes) -> (Vec<DpsmLight<f32>>, u3
     (lights.iter().map(place).collect(), side)
 }
 
+/// What a method sorts its triangles by.
+fn sorted_by(method: Method, settings: &Settings) -> Option<By> {
+    match method {
+        Method::Exact | Method::Hybrid => Some(By::Class),
+        Method::Cube if settings.cull_faces => Some(By::Face),
+        _ => None,
+    }
+}
+
+/// Triangles that lists have room for.
+fn capacity(device: &Device, settings: &Settings, drawn: &[(Range<u32>, Method)]) -> u32 {
+    let sorted = drawn.iter().filter(|(_, method)| sorted_by(*method, settings).is_some());
+    let longest = sorted.map(|(triangles, _)| triangles.len() as u32).max();
+    Lists::chunk(device, longest.unwrap_or(0))
+}
+
+/// Ranges of triangles as they are drawn: those that are sorted in as many as lists need.
+fn chunks(settings: &Settings, drawn: Vec<(Range<u32>, Method)>, capacity: u32) -> Vec<Chunk> {
+    let mut chunks = Vec::new();
+    for (Range { start, end }, method) in drawn {
+        let is_sorted = sorted_by(method, settings).is_some();
+        let step = if is_sorted { capacity } else { end - start };
+        let chunk = |first: u32| {
+            let triangles = first..first.saturating_add(step).min(end);
+            Chunk { triangles, method, is_sorted }
+        };
+        chunks.extend((start..end).step_by(step as usize).map(chunk));
+    }
+    chunks
+}
+
+/// Chunks for one pass a map: consecutive ones, of which one may be sorted, as lists hold one. At
+/// least one batch, as passes without draws clear the maps.
+fn batches(chunks: &[Chunk]) -> Vec<Range<usize>> {
+    let mut batches = Vec::new();
+    let (mut start, mut has_lists) = (0, false);
+    for (index, chunk) in chunks.iter().enumerate() {
+        if chunk.is_sorted && has_lists {
+            batches.push(start..index);
+            start = index;
+        }
+        has_lists |= chunk.is_sorted;
+    }
+    batches.push(start..chunks.len());
+    batches
+}
+
 /// The uniforms of each light, chunk and map, in this order.
-fn passes(
+fn uniforms(
     frame: &Frame,
     mesh: &MeshBuffers,
     lights: &[DpsmLight<f32>],
-    chunks: &[Range<u32>],
+    chunks: &[Chunk],
     [capacity, extra]: [u32; 2],
 ) -> Vec<MapPass> {
-    let [tau, depth_tolerance] = frame.settings.tolerances();
-    let pass = |light: DpsmLight<f32>, chunk: &Range<u32>, hemisphere: u32| {
+    let pass = |light: DpsmLight<f32>, chunk: &Chunk, hemisphere: u32| {
+        let [tau, depth_tolerance] = frame.settings.tolerances_of(chunk.method);
         let beside = if light.placement == DPSM_ATLAS { hemisphere as f32 } else { 0.0 };
         MapPass {
             light,
             hemisphere,
-            first: chunk.start,
-            triangles: chunk.len() as u32,
+            first: chunk.triangles.start,
+            triangles: chunk.triangles.len() as u32,
             first_masked: mesh.first_masked,
             capacity,
             extra,
@@ -265,11 +326,11 @@ fn passes(
             padding: 0,
         }
     };
-    let mut passes = Vec::new();
+    let mut uniforms = Vec::new();
     for light in lights {
         for chunk in chunks {
-            passes.extend((0..light.hemispheres).map(|h| pass(*light, chunk, h)));
+            uniforms.extend((0..light.hemispheres).map(|h| pass(*light, chunk, h)));
         }
     }
-    passes
+    uniforms
 }

@@ -61,8 +61,21 @@ pub struct Point {
 
 /// The frame's triangles to cast rays at, with the holes of their masks.
 pub fn truth_of(frame: &Frame) -> Truth {
+    truth_of_some(frame, |_| true)
+}
+
+/// The same without the meshes that are left out of the maps: nothing meets their triangles.
+pub fn truth_of_casters(frame: &Frame) -> Truth {
+    let drawn = frame.drawn();
+    truth_of_some(frame, |triangle| drawn.iter().any(|(range, _)| range.contains(&triangle)))
+}
+
+fn truth_of_some(frame: &Frame, wanted: impl Fn(u32) -> bool) -> Truth {
     let positions: Vec<DVec3> = frame.vertices.iter().map(|v| v.position.as_dvec3()).collect();
-    let truth = Truth::new(&positions, frame.triangles.iter().copied());
+    let triangles = (0..).zip(&frame.triangles);
+    // no position has that index
+    let triangles = triangles.map(|(index, t)| if wanted(index) { *t } else { [u32::MAX; 3] });
+    let truth = Truth::new(&positions, triangles);
     if frame.masks.is_empty() {
         return truth;
     }

@@ -36,8 +36,8 @@ pub use target::{TEXEL_OF, Target};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::measure::{Bench, Point, truth_of};
-use crate::render::{Bias, Filter, Format, Frame, Method, Settings, View};
+use crate::measure::{Bench, Point, truth_of, truth_of_casters};
+use crate::render::{Bias, Casting, Filter, Format, Frame, Method, Settings, View};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{Camera, Light, Scene};
 use axis::{Axis, Judge};
@@ -159,8 +159,9 @@ pub struct Plan {
 /// See [`PlanError`].
 pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let view = request.camera.map(|camera| View::new(&camera, request.image)).transpose()?;
-    let frames = frames(request)?;
-    let Casters { left_out, near, far } = casters(request.scene, &request.lights, view.as_slice());
+    let Casters { left_out, near, far } =
+        casters(request.scene, &request.lights, view.as_slice());
+    let frames = frames(request, &left_out)?;
     let samples = samples(request, &frames);
     if samples.is_empty() {
         return Err(PlanError::NothingSeen);
@@ -227,18 +228,26 @@ impl Plan {
             "hardware" => (Sampling::Linear, Bias::Footprint),
             other => return Err(unknown("filter", other)),
         };
+        let method = match self.method.as_str() {
+            "hybrid" => Method::Hybrid,
+            "exact" => Method::Exact,
+            other => return Err(unknown("method", other)),
+        };
+        let mut casting = vec![Casting::By(method); self.meshes];
+        for out in &self.left_out {
+            if let Some(mesh) = casting.get_mut(out.mesh) {
+                *mesh = Casting::LeftOut;
+            }
+        }
         Ok(Settings {
             size: self.size,
+            casting: if self.left_out.is_empty() { Vec::new() } else { casting },
             format: match self.format.as_str() {
                 "d16" => Format::D16,
                 "d32" => Format::D32,
                 other => return Err(unknown("format", other)),
             },
-            method: match self.method.as_str() {
-                "hybrid" => Method::Hybrid,
-                "exact" => Method::Exact,
-                other => return Err(unknown("method", other)),
-            },
+            method,
             tau: self.tau,
             depth_tolerance: Some(self.depth_tolerance),
             filter: Filter::Single,
@@ -300,7 +309,10 @@ fn axes(request: &Request<'_>, judge: &Judge<'_>, view: Option<&View>) -> Vec<Ax
 }
 
 /// A frame for each position of the light, all with the default settings.
-fn frames(request: &Request<'_>) -> Result<Vec<Frame>, PlanError> {
+fn frames(
+    request: &Request<'_>,
+    left_out: &[Option<casters::Reason>],
+) -> Result<Vec<Frame>, PlanError> {
     if request.lights.is_empty() {
         return Err(PlanError::NoLight);
     }
@@ -310,7 +322,12 @@ fn frames(request: &Request<'_>) -> Result<Vec<Frame>, PlanError> {
         up: Vec3::Y,
         vertical_fov: 1.0,
     });
-    let settings = Settings { image: request.image, ..Settings::default() };
+    let casting = |reason: &Option<casters::Reason>| match reason {
+        Some(_) => Casting::LeftOut,
+        None => Casting::By(Method::Hybrid),
+    };
+    let casting = left_out.iter().map(casting).collect();
+    let settings = Settings { image: request.image, casting, ..Settings::default() };
     let frame = |&light: &Vec3| {
         let axis = request.axis.unwrap_or(DOWN);
         let hemispherical = request.axis.is_some();
@@ -321,12 +338,12 @@ fn frames(request: &Request<'_>) -> Result<Vec<Frame>, PlanError> {
 
 /// The receivers of all lights; those behind a hemispherical light are dark by definition.
 fn samples(request: &Request<'_>, frames: &[Frame]) -> Vec<Sample> {
-    let truth = truth_of(&frames[0]);
+    let (truth, casters) = (truth_of(&frames[0]), truth_of_casters(&frames[0]));
     let count = POINTS.div_ceil(frames.len());
     let mut samples = Vec::new();
     for (seed, frame) in (request.seed..).zip(frames) {
         let points = receivers(frame, &truth, request.camera.is_some(), count, seed);
-        let sight = Sight { truth: &truth, origin: origin(frame) };
+        let sight = Sight { truth: &casters, origin: origin(frame) };
         samples.extend(sight.samples(&points, request.error));
     }
     if let Some(axis) = request.axis {

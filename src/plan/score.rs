@@ -1,23 +1,33 @@
 //! A plan put to the proof: how far points that a frame's maps light wrongly are from the true
 //! shadow edge.
 
+use std::f64::consts::TAU;
 use std::sync::OnceLock;
 
+use fastrand::Rng;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::sight::turned;
 use super::{Sight, Target};
 use crate::measure::{Bench, Point};
+use crate::render::Frame;
 
-/// Azimuths in which an edge is looked for: the nearest is at most 1 / cos(pi / 64) as far as in
-/// the best direction, 0.12%.
-const AZIMUTHS: u32 = 64;
+/// Azimuths in which an edge is looked for: the nearest is at most 1 / cos(pi / 32) as far as in
+/// the best direction, 0.5%.
+const AZIMUTHS: u32 = 32;
 
 /// Rings, in allowed angles: the first that meets an edge ends the search.
-const RINGS: [f64; 9] = [0.125, 0.25, 0.5, 0.7, 0.85, 1.0, 1.25, 2.0, 8.0];
+const RINGS: [f64; 7] = [0.2, 0.4, 0.7, 1.0, 1.25, 2.0, 8.0];
 
 /// Error of a point with no edge within the widest ring.
 const NO_EDGE: f64 = 8.0;
+
+/// Azimuths and rings that tell which points are beside an edge.
+const BESIDE: (u32, [f64; 2]) = (8, [0.5, 1.5]);
+
+/// Points made around each point beside an edge, where wrong ones are.
+const AROUND: usize = 16;
 
 /// Points, and the truth about them, for any number of frames with the same light.
 #[derive(Debug)]
@@ -52,6 +62,37 @@ impl<'a> Proof<'a> {
         Self { sight, target, points, lit, edges }
     }
 
+    /// As `new`, with more points beside shadow edges, where a map can be wrong: on the triangles
+    /// of those points that are beside one, as far from it as the target allows. `eye` must see
+    /// them; without one they only need to lie on the triangle.
+    pub fn beside_edges(
+        sight: Sight<'a>,
+        target: Target,
+        mut points: Vec<Point>,
+        eye: Option<DVec3>,
+        seed: u64,
+    ) -> Self {
+        let (azimuths, rings) = BESIDE;
+        let around = |(seed, point): (u64, &Point)| {
+            let mut rng = Rng::with_seed(seed);
+            let to_point = point.world - sight.origin;
+            let allowed = target.angle(to_point.length());
+            let edge = sight.edge(point, &rings.map(|ring| ring * allowed), azimuths);
+            let count = if edge.is_finite() { AROUND } else { 0 };
+            let direction = to_point.normalize_or_zero();
+            let beside = (0..count).filter_map(|_| {
+                let angle = rng.f64() * (edge + allowed);
+                let turned = turned(direction, rng.f64() * TAU, angle);
+                sight.on_triangle(point, turned, eye)
+            });
+            beside.collect::<Vec<_>>()
+        };
+        let numbered: Vec<(u64, &Point)> = (seed..).zip(&points).collect();
+        let more: Vec<Vec<Point>> = numbered.into_par_iter().map(around).collect();
+        points.extend(more.into_iter().flatten());
+        Self::new(sight, target, points)
+    }
+
     /// The points.
     pub fn points(&self) -> &[Point] {
         &self.points
@@ -79,6 +120,15 @@ impl<'a> Proof<'a> {
         let all = 0..self.points.len();
         !all.into_par_iter()
             .any(|index| self.is_wrong(bench, index).is_some_and(|(_, share)| share > 1.0))
+    }
+
+    /// True where a lit point has no map in a frame.
+    pub fn needs_other_half(&self, frame: &Frame) -> bool {
+        let [x, y, z] = [frame.light.forward.x, frame.light.forward.y, frame.light.forward.z];
+        let forward = DVec3::new(x.into(), y.into(), z.into());
+        let behind = |point: &Point| (point.world - self.sight.origin).dot(forward) < 0.0;
+        frame.light.hemispheres == 1
+            && self.points.iter().zip(&self.lit).any(|(point, lit)| *lit && behind(point))
     }
 
     fn is_wrong(&self, bench: &Bench<'_>, index: usize) -> Option<(usize, f64)> {

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::Target;
 use crate::measure::Point;
-use crate::truth::Truth;
+use crate::truth::{Ray, Truth};
 
 /// A light among a scene's triangles.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,9 @@ pub struct Sample {
 /// meet what is narrow, and one wide enough to know many points beside each edge.
 const AZIMUTHS: u32 = 8;
 const RINGS: [f64; 2] = [1.0, 4.0];
+
+/// From where a triangle is looked at that no eye has to see, of the distance from the light.
+const BESIDE: f64 = 1e-3;
 
 /// Halvings of the gap between two rings: the edge is found to 1/64 of it.
 const HALVINGS: u32 = 6;
@@ -155,6 +158,23 @@ impl Sight<'_> {
         [own, least]
     }
 
+    /// Where a direction of the light meets a point's triangle, as an eye sees it, or for `None`
+    /// as is seen from beside it.
+    pub(super) fn on_triangle(
+        &self,
+        point: &Point,
+        direction: DVec3,
+        eye: Option<DVec3>,
+    ) -> Option<Point> {
+        let normal = point.normal?;
+        let distance = normal.dot(point.world - self.origin) / normal.dot(direction);
+        let there = self.origin + direction * distance;
+        let eye = eye.unwrap_or(there + normal * (BESIDE * distance));
+        let hit = self.truth.first_hit(&Ray::new(eye, there - eye))?;
+        let world = self.truth.point(&hit).filter(|_| Some(hit.triangle) == point.triangle)?;
+        Some(Point { world, ..*point })
+    }
+
     /// What a unit direction of the light meets of a point's plane; without a normal the plane is a
     /// sphere around the light.
     fn along(&self, point: &Point, direction: DVec3) -> Along {
@@ -175,7 +195,7 @@ impl Sight<'_> {
 }
 
 /// The unit direction at an angle from a unit axis.
-fn turned(axis: DVec3, azimuth: f64, angle: f64) -> DVec3 {
+pub(super) fn turned(axis: DVec3, azimuth: f64, angle: f64) -> DVec3 {
     let (side, other) = axis.any_orthonormal_pair();
     let (sin, cos) = azimuth.sin_cos();
     axis * angle.cos() + (side * cos + other * sin) * angle.sin()

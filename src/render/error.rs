@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{LARGEST, SMALLEST};
+use super::{LARGEST, Method, SMALLEST};
 
 /// Bad settings.
 #[derive(Debug, thiserror::Error, PartialEq)]
@@ -110,6 +110,28 @@ pub enum FrameError {
     /// The light's main axis points nowhere.
     #[error("the light's axis {0} has no direction; set --axis to a vector other than 0,0,0")]
     Axis(Vec3),
+    /// Castings that are not those of the scene's meshes.
+    #[error(
+        "{found} castings for the {meshes} meshes of the scene; give each mesh one, or give none"
+    )]
+    Castings {
+        /// How many castings.
+        found: usize,
+        /// The scene's meshes.
+        meshes: usize,
+    },
+    /// A mesh's method that the maps or the passes do not have.
+    #[error("mesh `{mesh}` is cast by {method:?}, but {why}; cast it by {remedy}, or leave it out")]
+    Casting {
+        /// The mesh.
+        mesh: String,
+        /// Its method.
+        method: Method,
+        /// What speaks against it.
+        why: &'static str,
+        /// Methods that would do.
+        remedy: &'static str,
+    },
     /// Something that the cube method does not have.
     #[error("the cube method has no {what}; choose {remedy}, or another --method")]
     Cube {

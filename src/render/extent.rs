@@ -4,12 +4,17 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3 as Position};
 
-use super::{Frame, FrameError, Level, check};
+use super::{Frame, FrameError, Level, Method, check};
 use crate::scalar::caster::dpsm_caster_border;
 use crate::scalar::float::Vec3;
 use crate::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
 use crate::scalar::light::DpsmLight;
 use crate::scalar::tessellate::dpsm_tessellate_level;
+
+/// What two ranges have in common.
+pub(crate) fn common(a: &Range<u32>, b: &Range<u32>) -> Range<u32> {
+    a.start.max(b.start)..a.end.min(b.end)
+}
 
 /// A mesh's triangles and the sphere around them.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +80,18 @@ impl Frame {
     /// Each mesh's extent, in the order of their triangles.
     pub fn extents(&self) -> Vec<Extent> {
         self.meshes.iter().map(|(_, range)| Extent::of(self, range)).collect()
+    }
+
+    /// The extents of the meshes that the tessellated method draws.
+    pub(crate) fn tessellated(&self) -> Vec<Extent> {
+        let drawn = self.drawn();
+        let is_drawn = |(_, range): &&(String, Range<u32>)| {
+            let by = |(drawn, method): &(Range<u32>, Method)| {
+                *method == Method::Tessellated && !common(drawn, range).is_empty()
+            };
+            drawn.iter().any(by)
+        };
+        self.meshes.iter().filter(is_drawn).map(|(_, range)| Extent::of(self, range)).collect()
     }
 
     /// Each mesh's level of tessellation for a light, from its longest edge and its distance. The

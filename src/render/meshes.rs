@@ -1,8 +1,9 @@
 //! A scene's meshes in a frame: whether they are whole, their order, and their holes.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 
-use super::{Frame, FrameError, Vertex, check};
+use super::{Casting, Frame, FrameError, Method, Vertex, check};
 use crate::scene::{Mask, Mesh};
 
 /// A frame's part that comes from meshes alone.
@@ -12,16 +13,23 @@ pub(super) struct Meshes {
     pub triangles: Vec<[u32; 3]>,
     pub meshes: Vec<(String, Range<u32>)>,
     pub masks: Vec<(Range<u32>, Mask)>,
+    pub castings: Vec<(Range<u32>, Casting)>,
 }
 
 impl Meshes {
-    /// Checks the meshes and puts them one after the other, masked ones last.
-    pub(super) fn gather(meshes: &[Mesh]) -> Result<Self, FrameError> {
+    /// Checks the meshes and puts them one after the other, masked ones last. With castings, of
+    /// the opaque ones those left out come first and those sorted last, of the masked ones the
+    /// other way about: so a method's triangles are few ranges, and what is sorted most often one.
+    pub(super) fn gather(meshes: &[Mesh], castings: &[Casting]) -> Result<Self, FrameError> {
         meshes.iter().try_for_each(check_mesh)?;
         let mut all = Self::default();
-        let (masked, opaque): (Vec<_>, Vec<_>) =
-            meshes.iter().partition(|mesh| mesh.mask.is_some());
-        for mesh in opaque.into_iter().chain(masked) {
+        let casting = |index: usize| castings.get(index).copied();
+        let method = |&(index, _): &(usize, &Mesh)| casting(index).and_then(Casting::method);
+        let (mut masked, mut opaque): (Vec<_>, Vec<_>) =
+            meshes.iter().enumerate().partition(|(_, mesh)| mesh.mask.is_some());
+        opaque.sort_by_key(method);
+        masked.sort_by_key(|of| Reverse(method(of)));
+        for (index, mesh) in opaque.into_iter().chain(masked) {
             let base = all.vertices.len() as u32;
             all.vertices.extend((0..mesh.positions.len()).map(|index| Vertex {
                 position: mesh.positions[index],
@@ -33,6 +41,7 @@ impl Meshes {
             all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|index| base + index)));
             let range = first..all.triangles.len() as u32;
             all.meshes.push((mesh.name.clone(), range.clone()));
+            all.castings.extend(casting(index).map(|casting| (range.clone(), casting)));
             all.masks.extend(mesh.mask.clone().map(|mask| (range, mask)));
         }
         Ok(all)
@@ -43,6 +52,24 @@ impl Frame {
     /// The first triangle of a masked mesh: it and all after it have a mask, none before it has.
     pub fn first_masked(&self) -> u32 {
         self.masks.first().map_or(self.triangles.len() as u32, |(range, _)| range.start)
+    }
+
+    /// The triangles that the maps hold, in order, each range with the method that draws it;
+    /// adjacent ranges of one method are joined, and none is empty.
+    pub fn drawn(&self) -> Vec<(Range<u32>, Method)> {
+        let all = (0..self.triangles.len() as u32, Casting::By(self.settings.method));
+        let all = self.castings.is_empty().then_some(all);
+        let mut drawn: Vec<(Range<u32>, Method)> = Vec::new();
+        for (range, casting) in all.iter().chain(&self.castings) {
+            let Some(method) = casting.method().filter(|_| !range.is_empty()) else { continue };
+            match drawn.last_mut() {
+                Some((last, by)) if *by == method && last.end == range.start => {
+                    last.end = range.end;
+                }
+                _ => drawn.push((range.clone(), method)),
+            }
+        }
+        drawn
     }
 
     /// The mask of a triangle's mesh.

@@ -1,7 +1,8 @@
 //! What a rendering may vary, and what follows from it.
 
-use super::{FrameError, guard_band};
+use super::{FrameError, Projection, guard_band};
 use crate::scalar::maps::Sampling;
+use crate::scene::Mesh;
 
 /// Storage of a depth map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +37,7 @@ impl Format {
 }
 
 /// How the maps are made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Method {
     /// Brabec 2002: project vertices, interpolate everything.
     Vertex,
@@ -50,6 +51,32 @@ pub enum Method {
     Hybrid,
     /// Six perspective faces, the baseline.
     Cube,
+}
+
+/// What one mesh is in the maps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Casting {
+    /// Drawn by this method.
+    By(Method),
+    /// Not drawn: it shadows nothing that is seen.
+    LeftOut,
+}
+
+impl Casting {
+    /// The method that draws it, if any does.
+    pub fn method(self) -> Option<Method> {
+        match self {
+            Self::By(method) => Some(method),
+            Self::LeftOut => None,
+        }
+    }
+}
+
+impl Method {
+    /// True for the methods that sort triangles into a list for each map.
+    pub(crate) fn is_sorted(self) -> bool {
+        matches!(self, Self::Exact | Self::Hybrid)
+    }
 }
 
 /// How finely the tessellated method subdivides.
@@ -191,6 +218,10 @@ impl Filter {
     }
 }
 
+/// The methods of paraboloid maps, and those of them that have multiview, as a message says it.
+const PARABOLOID: &str = "Vertex, FragmentDepth, Tessellated, Exact or Hybrid";
+const MULTIVIEW: &str = "Vertex, FragmentDepth or Tessellated";
+
 /// The settings of a rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
@@ -198,8 +229,12 @@ pub struct Settings {
     pub size: u32,
     /// Storage of the maps.
     pub format: Format,
-    /// How the maps are made.
+    /// How the maps are made: which maps a light has, and who draws the meshes without a casting.
     pub method: Method,
+    /// What each mesh is in the maps: one for each of the scene's meshes, in the scene's order;
+    /// empty: all by `method`. `Frame::new` reads it; methods must draw the same kind of maps as
+    /// `method`.
+    pub casting: Vec<Casting>,
     /// Hybrid method: how far an edge may be drawn from its place, in texels.
     pub tau: f32,
     /// Hybrid method: how far a stored distance may be off, relative; by default
@@ -237,6 +272,7 @@ impl Default for Settings {
             size: 1024,
             format: Format::D32,
             method: Method::Hybrid,
+            casting: Vec::new(),
             tau: 1.0 / 32.0,
             depth_tolerance: None,
             level: Level::Mesh(64),
@@ -280,7 +316,35 @@ impl Settings {
         }
     }
 
-    /// Refuses passes that the method does not have.
+    /// The methods that draw meshes.
+    pub fn methods(&self) -> impl Iterator<Item = Method> {
+        let all = self.casting.is_empty().then_some(self.method);
+        all.into_iter().chain(self.casting.iter().filter_map(|casting| casting.method()))
+    }
+
+    /// Refuses castings that do not fit the scene's meshes, the maps or the passes.
+    pub(super) fn check_casting(&self, meshes: &[Mesh]) -> Result<(), FrameError> {
+        if ![0, meshes.len()].contains(&self.casting.len()) {
+            let (found, meshes) = (self.casting.len(), meshes.len());
+            return Err(FrameError::Castings { found, meshes });
+        }
+        for (mesh, casting) in meshes.iter().zip(&self.casting) {
+            let Some(method) = casting.method() else { continue };
+            let (why, remedy) = match (self.method.projection(), method) {
+                (Projection::Cube, Method::Cube) => continue,
+                (Projection::Cube, _) => ("the light's maps are the faces of a cube", "Cube"),
+                (_, Method::Cube) => ("the light's maps are paraboloid", PARABOLOID),
+                _ if method.is_sorted() && self.passes == Passes::Multiview => {
+                    ("that draws a list of triangles for each map, without multiview", MULTIVIEW)
+                }
+                _ => continue,
+            };
+            return Err(FrameError::Casting { mesh: mesh.name.clone(), method, why, remedy });
+        }
+        Ok(())
+    }
+
+    /// Refuses passes that the methods do not have.
     pub(crate) fn check_passes(&self) -> Result<(), FrameError> {
         let remedy = "--passes single";
         match (self.passes, self.method) {
@@ -288,14 +352,22 @@ impl Settings {
             (Passes::Multiview, Method::Cube) => {
                 Err(FrameError::Cube { what: "multiview", remedy })
             }
-            (Passes::Multiview, Method::Exact | Method::Hybrid) => Err(FrameError::Multiview),
+            (Passes::Multiview, _) if self.methods().any(Method::is_sorted) => {
+                Err(FrameError::Multiview)
+            }
             _ => Ok(()),
         }
     }
 
-    /// tau and depth tolerance of the method: both 0 for the exact one.
+    /// The largest tau and depth tolerance that a mesh is drawn with.
     pub fn tolerances(&self) -> [f32; 2] {
-        match self.method {
+        let of = self.methods().map(|method| self.tolerances_of(method));
+        of.fold([0.0; 2], |[a, b], [tau, depth]| [a.max(tau), b.max(depth)])
+    }
+
+    /// tau and depth tolerance of a method: both 0 for all but the hybrid one.
+    pub fn tolerances_of(&self, method: Method) -> [f32; 2] {
+        match method {
             Method::Hybrid => {
                 let depth = self.depth_tolerance.unwrap_or_else(|| depth_tolerance(self.size));
                 [self.tau, depth]

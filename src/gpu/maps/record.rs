@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use super::{Set, ShadowMaps, layers_of};
+use super::{Chunk, Set, ShadowMaps, layers_of};
 use crate::gpu::lists::{CURVED, DRAW_BYTES, FLAT, MASKED, STEEP, STRADDLING};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::multiview::view_mask;
 use crate::gpu::passes::{MapPass, PASS_BYTES, depth_attachment};
 use crate::gpu::timer::{Ends, Stamps, render_writes};
-use crate::render::Method;
+use crate::render::{Method, common};
 use crate::scalar::light::DPSM_ATLAS;
 
 /// What to record of the maps' making. Drawing without sorting needs lists that were kept.
@@ -50,34 +50,38 @@ impl ShadowMaps {
         stamps: Stamps<'_>,
         parts: Parts,
     ) {
-        let sorter = self.sorter.as_ref().filter(|_| parts.sort);
-        let jobs = self.lights.len() * self.chunks.len();
-        let (mut target, mut at) = (0, 0);
+        let jobs = self.lights.len() * self.batches.len();
+        let (mut target, mut at, mut begun) = (0, 0, 0);
         for (number, light) in self.lights.iter().enumerate() {
             let maps = light.hemispheres as usize;
             let views = self.views[number];
             let targets = (layers_of(light) / views) as usize;
-            for (chunk, triangles) in self.chunks.iter().enumerate() {
-                let job = number * self.chunks.len() + chunk;
-                let (first, last) = (job == 0, job + 1 == jobs);
+            for (batch_number, batch) in self.batches.iter().enumerate() {
+                let job = number * self.batches.len() + batch_number;
+                let (mut first, last) = (job == 0, job + 1 == jobs);
                 let set = &self.sets[job.min(self.sets.len() - 1)];
-                if let (Some(sorter), Some(group)) = (sorter, &set.sorting) {
+                let sorted = batch.clone().find(|&chunk| self.chunks[chunk].is_sorted);
+                if let (Some(chunk), Some(sorter), Some(group), true) =
+                    (sorted, &self.sorter, &set.sorting, parts.sort)
+                {
                     let offset = (at + chunk * maps) * PASS_BYTES;
                     let ends = Ends { first, last: last && !parts.draw };
                     let bound = (group, offset as u32);
-                    let count = triangles.len() as u32;
+                    let count = self.chunks[chunk].triangles.len() as u32;
                     sorter.record(encoder, bound, count, &set.lists, stamps, ends);
+                    first = false;
                 }
                 if !parts.draw {
                     continue;
                 }
                 for pass_number in 0..targets {
                     let ends = Ends {
-                        first: first && sorter.is_none() && pass_number == 0,
+                        first: first && pass_number == 0,
                         last: last && pass_number + 1 == targets,
                     };
+                    begun += 1;
                     let view = &self.targets[target + pass_number];
-                    let mut pass = begin(encoder, (view, views), chunk == 0, stamps, ends);
+                    let mut pass = begin(encoder, (view, views), batch_number == 0, stamps, ends);
                     let is_atlas = light.placement == DPSM_ATLAS;
                     let drawn = if is_atlas { 0..maps } else { pass_number..pass_number + 1 };
                     for map in drawn {
@@ -87,14 +91,17 @@ impl ShadowMaps {
                             let side = size as u32;
                             pass.set_scissor_rect(map as u32 * side, 0, side, side);
                         }
-                        let place = at + chunk * maps + map;
-                        self.draw(&mut pass, mesh, (place, number), set, parts);
+                        for chunk in batch.clone() {
+                            let place = (at + chunk * maps + map, number);
+                            self.draw(&mut pass, mesh, &self.chunks[chunk], place, set, parts);
+                        }
                     }
                 }
             }
             at += maps * self.chunks.len();
             target += targets;
         }
+        debug_assert!(!parts.draw || begun == self.passes(), "{begun} passes");
     }
 
     /// Draws one map's chunk.
@@ -102,24 +109,22 @@ impl ShadowMaps {
         &self,
         pass: &mut wgpu::RenderPass<'_>,
         mesh: &MeshBuffers,
+        chunk: &Chunk,
         (at, number): (usize, usize),
         set: &Set,
         parts: Parts,
     ) {
-        let MapPass { light, hemisphere, first, triangles, first_masked, .. } = self.passes[at];
-        let pipelines = &self.pipelines[&self.views[number]];
+        let MapPass { light, hemisphere, first_masked, .. } = self.uniforms[at];
+        let Chunk { triangles, method, is_sorted } = chunk;
+        let views = self.views[number];
+        let pipelines = &self.pipelines[&(views, *method)];
         // each view of multiview draws what any of them sees
-        let seen_from =
-            (self.method != Method::Cube && self.views[number] == 1).then_some(hemisphere);
+        let seen_from = (*method != Method::Cube && views == 1).then_some(hemisphere);
         pass.set_bind_group(0, &set.drawing, &[(at * PASS_BYTES) as u32]);
-        let chunk = first..first + triangles;
-        let within = |range: Range<u32>, low: u32, high: u32| {
-            range.start.clamp(low, high)..range.end.clamp(low, high)
-        };
-        let opaque = |range: Range<u32>| within(range, 0, first_masked);
-        let masked = |range: Range<u32>| within(range, first_masked, u32::MAX);
+        let opaque = triangles.start..triangles.end.min(first_masked);
+        let masked = triangles.start.max(first_masked)..triangles.end;
         let draws = &set.lists.draws;
-        match self.method {
+        match method {
             Method::Exact | Method::Hybrid => {
                 let map = u64::from(hemisphere);
                 pass.set_vertex_buffer(0, mesh.positions.slice(..));
@@ -137,33 +142,35 @@ impl ShadowMaps {
                 if parts.curved {
                     pass.set_pipeline(&pipelines[3]);
                     pass.draw_indirect(draws, (CURVED + map) * DRAW_BYTES);
-                    if first_masked < mesh.triangles {
+                    if !masked.is_empty() {
                         pass.set_pipeline(&pipelines[4]);
                         pass.draw_indirect(draws, (MASKED + map) * DRAW_BYTES);
                     }
                 }
             }
-            Method::Cube if self.sorter.is_some() => {
+            Method::Cube if *is_sorted => {
                 pass.set_pipeline(&pipelines[0]);
                 pass.set_vertex_buffer(0, mesh.positions.slice(..));
                 pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);
                 pass.draw_indexed_indirect(draws, u64::from(hemisphere) * DRAW_BYTES);
-                draw_ranges(pass, &pipelines[1], mesh, [masked(chunk)]);
+                draw_ranges(pass, &pipelines[1], mesh, [masked]);
             }
             Method::Tessellated => {
-                let seen = mesh.meshes.iter().zip(&self.levels[number]);
-                for (extent, &level) in seen.filter(|(m, _)| m.is_seen(&light, seen_from)) {
-                    let is_masked = extent.triangles.start >= first_masked;
-                    pass.set_pipeline(&pipelines[usize::from(is_masked)]);
-                    let each = 3 * level * level;
-                    let Range { start, end } = extent.triangles;
-                    pass.draw(start * each..end * each, level..level + 1);
+                let seen = self.levels[number].iter();
+                for (extent, level) in seen.filter(|(mesh, _)| mesh.is_seen(&light, seen_from)) {
+                    let Range { start, end } = common(&extent.triangles, triangles);
+                    if start < end {
+                        pass.set_pipeline(&pipelines[usize::from(start >= first_masked)]);
+                        let each = 3 * level * level;
+                        pass.draw(start * each..end * each, *level..level + 1);
+                    }
                 }
             }
             _ => {
                 let seen = mesh.seen(&light, seen_from);
-                draw_ranges(pass, &pipelines[0], mesh, seen.iter().cloned().map(opaque));
-                draw_ranges(pass, &pipelines[1], mesh, seen.iter().cloned().map(masked));
+                for (pipeline, part) in pipelines.iter().zip([opaque, masked]) {
+                    draw_ranges(pass, pipeline, mesh, seen.iter().map(|mesh| common(mesh, &part)));
+                }
             }
         }
     }
