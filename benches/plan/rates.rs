@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 use super::place::Place;
 
 /// Runs of each case; the least time counts, as what else the machine does only adds.
-const RUNS: usize = 9;
+const RUNS: usize = 7;
 
 /// What a case's time is made of, in the order of `Rates`.
 type Row = [f64; 6];
@@ -23,7 +23,7 @@ pub fn rates() -> Result<(), Box<dyn std::error::Error>> {
     places.push(Place::of(scene::dozen(250_000), "dozen"));
     places.extend(Place::sponza());
     let mut rows: Vec<(String, Row, f64)> = Vec::new();
-    let mut exact = Vec::new();
+    let (mut exact, mut straight) = (Vec::new(), Vec::new());
     for place in &places {
         let kept = vec![true; place.scene.meshes.len()];
         for size in [128, 256, 512, 1024, 2048] {
@@ -50,12 +50,15 @@ pub fn rates() -> Result<(), Box<dyn std::error::Error>> {
                 let axis = DVec3::new(axis.x.into(), axis.y.into(), axis.z.into());
                 let loads = &cost::loads(&seen, axis)[..maps];
                 let row = std::array::from_fn(|i| generation(&unit(i), loads, seen.len(), size));
-                rows.push((format!("{}, {size}, {maps}", place.name), row, hybrid));
+                let name = format!("{}, {size}, {maps}", place.name);
+                straight.push((name.clone(), row, time(Method::Vertex)?.0));
+                rows.push((name, row, hybrid));
             }
         }
     }
     let found = fit(&rows);
-    println!("\npass, sort, triangle, outline, inside, texel: {found:?}\n");
+    println!("\npass, sort, triangle, outline, inside, texel: {found:?}");
+    println!("of the vertex method: {:?}\n", fit(&straight));
     let mut ratios = Vec::new();
     for (name, row, time) in &rows {
         let predicted: f64 = row.iter().zip(found).map(|(x, rate)| x * rate).sum();

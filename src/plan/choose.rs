@@ -11,11 +11,12 @@ use crate::scalar::float::{self as scalar, Vec2};
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::Sampling;
 
-/// How far from its own texel's centre a point may be, in texels: half a diagonal. Of 2 x 2 texels
-/// compared together, those on the wrong side of a straight edge outweigh the others only within
-/// half a texel of it (docs/plan.md).
-const HARD_REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
-const HARDWARE_REACH: f64 = 0.5;
+/// How far from the true edge a point that is lit wrongly may be, in texels, but for one in a
+/// thousand of them: half a texel's diagonal, 0.707, bounds them all. Of 2 x 2 texels compared
+/// together, those on the wrong side of a straight edge outweigh the others only within half a
+/// texel of it, and but for one in a thousand within less (docs/plan.md).
+const HARD_REACH: f64 = 0.603;
+const HARDWARE_REACH: f64 = 0.449;
 
 /// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
 /// a gap to be forgiven.
@@ -115,11 +116,10 @@ fn step(size: u32) -> u32 {
 impl Case<'_> {
     /// How many texels a lookup may be off.
     pub fn reach(&self, sampling: Sampling) -> f64 {
-        self.tau
-            + match sampling {
-                Sampling::Nearest => HARD_REACH,
-                Sampling::Linear => HARDWARE_REACH,
-            }
+        match sampling {
+            Sampling::Nearest => HARD_REACH,
+            Sampling::Linear => HARDWARE_REACH,
+        }
     }
 
     /// The size that the shadow edges ask for.

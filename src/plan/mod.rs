@@ -30,7 +30,7 @@ mod target;
 pub use error::PlanError;
 pub use explain::Choice;
 pub use score::{Proof, Wrong};
-pub use sight::{Sample, Sight};
+pub use sight::{Ends, Sample, Sight};
 pub use target::{TEXEL_OF, Target};
 
 use glam::{DVec3, Vec3};
@@ -159,8 +159,7 @@ pub struct Plan {
 /// See [`PlanError`].
 pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let view = request.camera.map(|camera| View::new(&camera, request.image)).transpose()?;
-    let Casters { left_out, near, far } =
-        casters(request.scene, &request.lights, view.as_slice());
+    let Casters { left_out, near, far } = casters(request.scene, &request.lights, view.as_slice());
     let frames = frames(request, &left_out)?;
     let samples = samples(request, &frames);
     if samples.is_empty() {
@@ -363,9 +362,20 @@ fn receivers(
     let empty = DepthMaps::empty(1, frame.light.hemispheres, Sampling::Nearest);
     let bench = Bench::new(frame, &empty, truth);
     match from_camera {
-        true => bench.points_from_camera(count, seed),
+        true => {
+            let mut points = bench.points_from_camera(count, seed);
+            points.retain(|point| shows(point, origin(frame), frame.view.eye.as_dvec3()));
+            points
+        }
         false => bench.points_scattered(count, seed),
     }
+}
+
+/// True where an eye sees the side of a point's surface that the light is on: the other side is
+/// dark whatever the maps say.
+pub fn shows(point: &Point, light: DVec3, eye: DVec3) -> bool {
+    let side = |from: DVec3| point.normal.map_or(0.0, |normal| normal.dot(from - point.world));
+    side(light) * side(eye) >= 0.0
 }
 
 /// The light's position.

@@ -8,7 +8,7 @@ use fastrand::Rng;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::sight::turned;
+use super::sight::{Ends, turned};
 use super::{Sight, Target};
 use crate::measure::{Bench, Point};
 use crate::render::Frame;
@@ -77,7 +77,7 @@ impl<'a> Proof<'a> {
             let mut rng = Rng::with_seed(seed);
             let to_point = point.world - sight.origin;
             let allowed = target.angle(to_point.length());
-            let edge = sight.edge(point, &rings.map(|ring| ring * allowed), azimuths);
+            let edge = sight.edge(point, &rings.map(|ring| ring * allowed), azimuths, Ends::Pass);
             let count = if edge.is_finite() { AROUND } else { 0 };
             let direction = to_point.normalize_or_zero();
             let beside = (0..count).filter_map(|_| {
@@ -144,6 +144,6 @@ impl<'a> Proof<'a> {
     fn edge(&self, point: &Point) -> f64 {
         let allowed = self.target.angle((point.world - self.sight.origin).length());
         let rings = RINGS.map(|ring| ring * allowed);
-        (self.sight.edge(point, &rings, AZIMUTHS) / allowed).min(NO_EDGE)
+        (self.sight.edge(point, &rings, AZIMUTHS, Ends::Count) / allowed).min(NO_EDGE)
     }
 }

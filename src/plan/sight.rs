@@ -29,6 +29,15 @@ enum Along {
     Beyond,
 }
 
+/// What a direction that misses a point's plane is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// No shadow edge: a lookup there compares the receiver itself.
+    Pass,
+    /// An edge, as `dpsm measure` takes it.
+    Count,
+}
+
 /// A receiver, and how well a map must know what is around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -90,7 +99,7 @@ impl Sight<'_> {
         let direction = to_point.try_normalize()?;
         let allowed = target.angle(distance);
         let rings = RINGS.map(|ring| ring * allowed);
-        let edge = self.edge(point, &rings, AZIMUTHS);
+        let edge = self.edge(point, &rings, AZIMUTHS, Ends::Pass);
         let gap = match edge > allowed {
             true => self.gap(point, direction, allowed),
             false => [f64::INFINITY; 2],
@@ -106,15 +115,17 @@ impl Sight<'_> {
         })
     }
 
-    /// The angle from a point to the nearest place where its plane's light changes, or the plane
-    /// ends; infinite beyond the widest ring. Rings ascend.
-    pub fn edge(&self, point: &Point, rings: &[f64], azimuths: u32) -> f64 {
+    /// The angle from a point to the nearest place where its plane's light changes; infinite beyond
+    /// the widest ring. Rings ascend.
+    pub fn edge(&self, point: &Point, rings: &[f64], azimuths: u32, ends: Ends) -> f64 {
         let Some(axis) = (point.world - self.origin).try_normalize() else { return 0.0 };
         let lit = self.is_lit(point);
-        let differs = |azimuth: f64, angle: f64| {
-            let along = self.along(point, turned(axis, azimuth, angle));
-            if lit { along != Along::Lit } else { !matches!(along, Along::Dark(_)) }
-        };
+        let differs =
+            |azimuth: f64, angle: f64| match self.along(point, turned(axis, azimuth, angle)) {
+                Along::Lit => !lit,
+                Along::Dark(_) => lit,
+                Along::Beyond => ends == Ends::Count,
+            };
         let mut inner = 0.0;
         for &outer in rings {
             let found = (0..azimuths)
