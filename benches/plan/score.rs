@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use dpsm::gpu::{self, Device, MeshBuffers, Parts, ShadowMaps};
-use dpsm::measure::{Bench, Point, truth_of};
+use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
 use dpsm::plan::choose::{LEAST_SIZE, ladder, ladder_below};
 use dpsm::plan::cost::{self, Rates, Seen};
 use dpsm::plan::{Plan, Proof, Request, Sight, Target, plan, shows};
@@ -20,7 +20,7 @@ use super::place::{Place, position};
 /// Lights of each scene.
 const POSES: usize = 20;
 
-/// Points that a setting must light rightly, and 16 more around each beside an edge.
+/// Points that a setting must light rightly, and 64 more around each beside an edge.
 const POINTS: usize = 10_000;
 
 /// Targets, one for each pose in turn.
@@ -187,8 +187,10 @@ impl Pose<'_> {
             let front = |point: &Point| (point.world - self.light.as_dvec3()).dot(axis.as_dvec3());
             points.retain(|point| front(point) >= 0.0);
         }
-        let sight = Sight { truth, origin: self.light.as_dvec3() };
-        let proof = Proof::beside_edges(sight, target, points, Some(eye), 99);
+        let casters = truth_of_casters(&frame);
+        let origin = self.light.as_dvec3();
+        let sights = [truth, &casters].map(|truth| Sight { truth, origin });
+        let proof = Proof::beside_edges(sights, target, points, Some(eye), 99);
         let maps = gpu::make_maps(self.device, &frame)?;
         let wrong = proof.wrong(&Bench::new(&frame, &maps, truth));
         let met = wrong.share <= 1.0;

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Vec3};
 
-use crate::render::{View, nearest_of};
+use crate::render::{SMALLEST, View, nearest_of};
 use crate::scene::{Mesh, Scene};
 
 /// Coordinates, of the largest one, by which a vertex may be behind a wall that it stands on: they
@@ -58,12 +58,13 @@ pub fn casters(scene: &Scene, lights: &[Vec3], views: &[View]) -> Casters {
     };
     let left_out: Vec<Option<Reason>> = scene.meshes.iter().map(reason).collect();
     let kept = || scene.meshes.iter().zip(&left_out).filter(|(_, out)| out.is_none());
-    let far = reaches.iter().fold(0.0, |far, reach| reach.max(far)) * FAR_SLACK;
+    let smallest = f64::from(SMALLEST);
+    let far = reaches.iter().fold(2.0 * smallest, |far, reach| reach.max(far)) * FAR_SLACK;
     let nearest = kept()
         .flat_map(|(mesh, _)| lights.iter().map(|light| nearest(mesh, *light)))
         .fold(f64::INFINITY, f64::min);
     let near = if nearest.is_finite() { nearest * NEAR_SHARE } else { far * NO_CASTER };
-    let near = near.clamp(f64::from(crate::render::SMALLEST), far * NEAR_SHARE);
+    let near = near.clamp(smallest, far * NEAR_SHARE);
     Casters { left_out, near: near as f32, far: far as f32 }
 }
 

@@ -84,8 +84,14 @@ pub struct Case<'a> {
     pub pixels: u64,
     /// What steps cost.
     pub rates: &'a Rates,
-    /// How far an edge may be drawn from its place, in texels.
-    pub tau: f64,
+}
+
+/// How many texels a lookup may be off, but for one wrong point in a thousand.
+pub fn reach(sampling: Sampling) -> f64 {
+    match sampling {
+        Sampling::Nearest => HARD_REACH,
+        Sampling::Linear => HARDWARE_REACH,
+    }
 }
 
 /// Bytes of a texel.
@@ -114,17 +120,9 @@ fn step(size: u32) -> u32 {
 }
 
 impl Case<'_> {
-    /// How many texels a lookup may be off.
-    pub fn reach(&self, sampling: Sampling) -> f64 {
-        match sampling {
-            Sampling::Nearest => HARD_REACH,
-            Sampling::Linear => HARDWARE_REACH,
-        }
-    }
-
     /// The size that the shadow edges ask for.
     pub fn edge_size(&self, axis: &Axis, sampling: Sampling) -> f64 {
-        let plain = axis.demand * self.reach(sampling);
+        let plain = axis.demand * reach(sampling);
         // the guard band is part of the side
         plain * f64::from(1.0 + guard_band(plain.clamp(1.0, f64::from(MOST_SIZE)) as u32))
     }
@@ -192,7 +190,7 @@ impl Case<'_> {
         for sample in self.samples.iter().filter(|sample| sample.gap[0].is_finite()) {
             let cosine = sample.direction.dot(axis.axis);
             let pitch = 2.0 * (1.0 + cosine.abs()) * (1.0 + light.guard) / light.size;
-            let reach = self.reach(sampling) * pitch;
+            let reach = reach(sampling) * pitch;
             let gap = sample.gap_within(reach);
             let l = sample.distance;
             let lean = DPSM_RECEIVER_ROUNDING * l / sample.incidence().max(f64::MIN_POSITIVE);

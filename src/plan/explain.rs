@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::casters::Reason;
-use super::choose::{Candidate, Case};
+use super::choose::{Candidate, Case, reach};
 use super::{LeftOut, Plan, Request, VERSION};
 use crate::render::{Format, Method, Settings};
 use crate::scalar::maps::Sampling;
@@ -83,7 +83,7 @@ pub fn explained(
         error,
     };
     let edges = case.edge_size(axis, best.sampling) / f64::from(best.size);
-    let reach = case.reach(best.sampling);
+    let reach = reach(best.sampling);
     plan.choices = vec![
         hemispheres(request, axes, candidates, best),
         seam(axes, candidates, best),
@@ -93,17 +93,18 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup may be off by {reach:.3} texel; the shadow edges that show ask for {:.0}",
+                "a lookup is off by up to {reach} texel but for 1 in 1000 that are; the shadow edges \
+                 that show ask for {:.0}",
                 case.edge_size(axis, best.sampling)
             ),
             Some(error(edges)),
         ),
         format_line(case, candidates, best),
-        method_line(best, error(edges * case.tau / reach)),
+        method_line(best, error(edges * f64::from(Settings::default().tau) / reach)),
         filter_line(candidates, best),
         line(
             "whole",
-            request.error.with(error(best.share)).to_string(),
+            request.error.with(error(best.share)).short(),
             match plan.meets {
                 true => format!("within {}", request.error),
                 false => format!(

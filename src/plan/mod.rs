@@ -159,6 +159,8 @@ pub struct Plan {
 /// See [`PlanError`].
 pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let view = request.camera.map(|camera| View::new(&camera, request.image)).transpose()?;
+    // meshes and lights are checked before they are looked at
+    frames(request, &[])?;
     let Casters { left_out, near, far } = casters(request.scene, &request.lights, view.as_slice());
     let frames = frames(request, &left_out)?;
     let samples = samples(request, &frames);
@@ -168,7 +170,6 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let kept: Vec<bool> = left_out.iter().map(Option::is_none).collect();
     let seen: Vec<_> =
         frames.iter().map(|frame| cost::seen(request.scene, &kept, origin(frame))).collect();
-    let tau = Settings::default().tau;
     let sorted = seen.iter().map(Vec::len).max().unwrap_or(0);
     let [width, height] = request.image.map(u64::from);
     let case = Case {
@@ -177,7 +178,6 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
         sorted,
         pixels: width * height,
         rates: &request.rates,
-        tau: tau.into(),
     };
     let plain = |axis: &Axis| {
         let size = choose::ladder(case.edge_size(axis, Sampling::Nearest));
@@ -307,7 +307,7 @@ fn axes(request: &Request<'_>, judge: &Judge<'_>, view: Option<&View>) -> Vec<Ax
     axes
 }
 
-/// A frame for each position of the light, all with the default settings.
+/// A frame for each position of the light, all with the default settings but for what is left out.
 fn frames(
     request: &Request<'_>,
     left_out: &[Option<casters::Reason>],

@@ -12,6 +12,9 @@ use super::sight::{Ends, turned};
 use super::{Sight, Target};
 use crate::measure::{Bench, Point};
 use crate::render::Frame;
+use crate::scalar::float::Vec2;
+use crate::scalar::maps::Sampling;
+use crate::scalar::paraboloid::{dpsm_disk_to_texture, dpsm_texture_to_disk};
 
 /// Azimuths in which an edge is looked for: the nearest is at most 1 / cos(pi / 32) as far as in
 /// the best direction, 0.5%.
@@ -27,12 +30,13 @@ const NO_EDGE: f64 = 8.0;
 const BESIDE: (u32, [f64; 2]) = (8, [0.5, 1.5]);
 
 /// Points made around each point beside an edge, where wrong ones are.
-const AROUND: usize = 16;
+const AROUND: usize = 64;
 
 /// Points, and the truth about them, for any number of frames with the same light.
 #[derive(Debug)]
 pub struct Proof<'a> {
     sight: Sight<'a>,
+    casters: Sight<'a>,
     target: Target,
     points: Vec<Point>,
     lit: Vec<bool>,
@@ -56,23 +60,28 @@ pub struct Wrong {
 
 impl<'a> Proof<'a> {
     /// Casts a ray to each point.
-    pub fn new(sight: Sight<'a>, target: Target, points: Vec<Point>) -> Self {
+    ///
+    /// `sights` are the light among all triangles, and among those of the meshes that maps hold: a
+    /// wall that none holds ends a shadow in the one, while in the other it goes on behind it.
+    pub fn new(sights: [Sight<'a>; 2], target: Target, points: Vec<Point>) -> Self {
+        let [sight, casters] = sights;
         let lit = points.par_iter().map(|point| sight.is_lit(point)).collect();
         let edges = points.iter().map(|_| OnceLock::new()).collect();
-        Self { sight, target, points, lit, edges }
+        Self { sight, casters, target, points, lit, edges }
     }
 
     /// As `new`, with more points beside shadow edges, where a map can be wrong: on the triangles
     /// of those points that are beside one, as far from it as the target allows. `eye` must see
     /// them; without one they only need to lie on the triangle.
     pub fn beside_edges(
-        sight: Sight<'a>,
+        sights: [Sight<'a>; 2],
         target: Target,
         mut points: Vec<Point>,
         eye: Option<DVec3>,
         seed: u64,
     ) -> Self {
         let (azimuths, rings) = BESIDE;
+        let sight = sights[0];
         let around = |(seed, point): (u64, &Point)| {
             let mut rng = Rng::with_seed(seed);
             let to_point = point.world - sight.origin;
@@ -90,7 +99,7 @@ impl<'a> Proof<'a> {
         let numbered: Vec<(u64, &Point)> = (seed..).zip(&points).collect();
         let more: Vec<Vec<Point>> = numbered.into_par_iter().map(around).collect();
         points.extend(more.into_iter().flatten());
-        Self::new(sight, target, points)
+        Self::new(sights, target, points)
     }
 
     /// The points.
@@ -136,14 +145,46 @@ impl<'a> Proof<'a> {
         let (map, _) = bench.place(point);
         let mapped = map < bench.frame.light.hemispheres;
         let shown = mapped && bench.visibility(point) >= 0.5;
-        (shown != self.lit[index])
-            .then(|| (index, *self.edges[index].get_or_init(|| self.edge(point))))
+        if shown == self.lit[index] {
+            return None;
+        }
+        let mut share = *self.edges[index].get_or_init(|| self.edge(point));
+        if share > 1.0 {
+            share = share.min(self.edge_at_centres(bench, point));
+        }
+        Some((index, share))
+    }
+
+    /// The same for an edge so narrow that no ring meets it: one that a texel's centre lies behind.
+    fn edge_at_centres(&self, bench: &Bench<'_>, point: &Point) -> f64 {
+        let (map, uv) = bench.place(point);
+        let (size, guard) = (bench.light.size, bench.light.guard);
+        let st = dpsm_disk_to_texture(uv, guard) * size;
+        let reach: &[f64] = match bench.maps.sampling {
+            Sampling::Nearest => &[0.0],
+            Sampling::Linear => &[-0.5, 0.5],
+        };
+        let texel = |at: f64, off: f64| (at + off).floor() + 0.5;
+        let centres = reach.iter().flat_map(|x| reach.iter().map(move |y| [*x, *y]));
+        let allowed = self.allowed(point);
+        let shares = centres.map(|[x, y]| {
+            let centre = Vec2::new(texel(st.x, x), texel(st.y, y)) / size;
+            let direction = bench.direction(dpsm_texture_to_disk(centre, guard), map);
+            let towards = |sight: Sight<'_>| sight.edge_towards(point, direction.normalize());
+            towards(self.sight).min(towards(self.casters)) / allowed
+        });
+        shares.fold(NO_EDGE, f64::min)
+    }
+
+    fn allowed(&self, point: &Point) -> f64 {
+        self.target.angle((point.world - self.sight.origin).length())
     }
 
     /// The distance from the true edge as a share of the target.
     fn edge(&self, point: &Point) -> f64 {
-        let allowed = self.target.angle((point.world - self.sight.origin).length());
+        let allowed = self.allowed(point);
         let rings = RINGS.map(|ring| ring * allowed);
-        (self.sight.edge(point, &rings, AZIMUTHS, Ends::Count) / allowed).min(NO_EDGE)
+        let edge = |sight: Sight<'_>| sight.edge(point, &rings, AZIMUTHS, Ends::Count);
+        (edge(self.sight).min(edge(self.casters)) / allowed).min(NO_EDGE)
     }
 }

@@ -151,6 +151,28 @@ impl Sight<'_> {
         f64::INFINITY
     }
 
+    /// The angle from a point to the first change of its plane's light on the way to a direction;
+    /// infinite where both ends are alike.
+    pub fn edge_towards(&self, point: &Point, direction: DVec3) -> f64 {
+        let Some(from) = (point.world - self.origin).try_normalize() else { return 0.0 };
+        let lit = self.is_lit(point);
+        let differs = |share: f64| match self.along(point, from.lerp(direction, share).normalize())
+        {
+            Along::Lit => !lit,
+            Along::Dark(_) => lit,
+            Along::Beyond => true,
+        };
+        if !differs(1.0) {
+            return f64::INFINITY;
+        }
+        let (mut same, mut other) = (0.0, 1.0);
+        for _ in 0..2 * HALVINGS {
+            let middle = 0.5 * (same + other);
+            if differs(middle) { other = middle } else { same = middle }
+        }
+        from.angle_between(from.lerp(direction, other))
+    }
+
     /// True where nothing keeps the light from a point.
     pub fn is_lit(&self, point: &Point) -> bool {
         self.truth.occluder(self.origin, point.world, point.triangle, 0.0).is_none()

@@ -61,9 +61,11 @@ impl Target {
         }
     }
 
-    /// As text with three digits.
+    /// As text with three significant digits.
     pub fn short(self) -> String {
-        format!("{:.3e}{}", self.value(), self.unit())
+        let value = self.value();
+        let digits = (2.0 - value.abs().max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 12.0);
+        format!("{value:.*}{}", digits as usize, self.unit())
     }
 
     fn unit(self) -> &'static str {

@@ -1,0 +1,195 @@
+//! Size, format, budget, and plans as files.
+
+use dpsm::plan::choose::{LEAST_SIZE, MOST_SIZE, ladder, ladder_below};
+use dpsm::plan::{Plan, PlanError, Request, Target, plan};
+use dpsm::render::{Bias, Casting, Format, Method, Settings};
+use dpsm::scalar::maps::Sampling;
+use dpsm::scene::Camera;
+use glam::{Vec3, vec3};
+
+use super::{built_in, floor_and_board, planned, target};
+
+#[test]
+fn targets_are_angles() {
+    // rounded once or twice each
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < 4.0 * f64::EPSILON;
+    assert!(near(target("0.1deg").angle(7.0), 0.1_f64.to_radians()));
+    assert!(near(target("0.002").angle(0.5), 0.004_f64.atan()));
+    let texel = target("0.5texel");
+    assert_eq!(texel, target("0.5texels"));
+    let whole = f64::from(1.0 + dpsm::render::guard_band(1024));
+    assert!(near(texel.angle(3.0), 0.5 * 4.0 * whole / 1024.0));
+    for text in ["", "x", "-1", "0", "inf", "nan", "1rad", "deg", "0.1 deg deg"] {
+        let error = text.parse::<Target>().unwrap_err();
+        assert!(error.contains("0.5texel") && error.contains(&format!("`{text}`")), "{error}");
+    }
+    assert_eq!(target("0.0123456").short(), "0.0123");
+    assert_eq!(target("123.4deg").short(), "123deg");
+}
+
+#[test]
+fn sizes_ascend_by_a_thirtysecond_of_an_octave_or_eight() {
+    let mut size = LEAST_SIZE;
+    let mut steps = 0;
+    while size < MOST_SIZE {
+        let next = ladder(f64::from(size) + 0.5);
+        assert!(
+            next > size
+                && f64::from(next) <= (f64::from(size) * 33.0 / 32.0).max(f64::from(size) + 8.0)
+        );
+        assert_eq!(ladder(next.into()), next);
+        assert_eq!(ladder_below(f64::from(next) - 0.5), Some(size));
+        (size, steps) = (next, steps + 1);
+    }
+    assert_eq!((size, ladder(1e9), ladder_below(15.9)), (MOST_SIZE, MOST_SIZE, None));
+    assert!(steps > 5 * 32);
+}
+
+#[test]
+fn finer_targets_ask_for_larger_maps() {
+    let scene = built_in("cornell");
+    let sizes = ["1deg", "0.5deg", "0.25deg"].map(|error| planned(&scene, error).size);
+    // of the same filter twice as fine a target asks for twice the size; the other filter or a
+    // thinner gap changes it by no more than their reaches' ratio and a doubling
+    assert!(sizes[0] < sizes[1] && sizes[1] < sizes[2], "{sizes:?}");
+}
+
+#[test]
+fn a_budget_that_is_too_small_gives_the_finest_maps_in_it_and_says_so() {
+    let scene = built_in("brabec-room");
+    let request = Request { camera: scene.camera, ..Request::new(&scene, target("0.1deg")) };
+    let free = plan(&request).unwrap();
+    assert!(free.meets);
+    let budget = free.bytes / 4;
+    let tight = plan(&Request { budget: Some(budget), ..request.clone() }).unwrap();
+    assert!(!tight.meets && tight.bytes <= budget && tight.size < free.size);
+    assert!(tight.predicted.value() > 0.1);
+    assert!(
+        tight.explanation().contains("0.1deg is not met: raise --budget"),
+        "{}",
+        tight.explanation()
+    );
+    // half as wide a map errs twice as much, but for the ladder's step and the filter
+    let none = plan(&Request { budget: Some(100), ..request });
+    assert_eq!(none.unwrap_err(), PlanError::Budget);
+}
+
+#[test]
+fn thin_gaps_forbid_coarse_formats() {
+    // of all surfaces, the floor under the board as well: a step of d16 is 9e-5 here, and what
+    // f32 rounds away 2e-5
+    let mut scene = floor_and_board(None);
+    for (height, format, method) in [(5e-5, "d32", "exact"), (0.5, "d16", "hybrid")] {
+        for position in &mut scene.meshes[1].positions {
+            position.y = height;
+        }
+        let plan = plan(&Request::new(&scene, target("0.5deg"))).unwrap();
+        let chosen = (plan.format.as_str(), plan.method.as_str());
+        assert_eq!(chosen, (format, method), "{}", plan.explanation());
+    }
+}
+
+#[test]
+fn every_choice_has_its_line_and_the_whole_is_the_largest() {
+    let plan = planned(&built_in("brabec-room"), "0.2deg");
+    let whats: Vec<&str> = plan.choices.iter().map(|choice| choice.what.as_str()).collect();
+    let expected = [
+        "hemispheres",
+        "axis",
+        "near and far",
+        "meshes",
+        "size",
+        "format",
+        "method",
+        "filter and bias",
+        "whole",
+    ];
+    assert_eq!(whats, expected);
+    let errors: Vec<f64> = plan.choices.iter().filter_map(|choice| choice.error).collect();
+    let whole = plan.choices.last().unwrap().error.unwrap();
+    assert!(errors.iter().all(|error| *error <= whole) && whole <= 0.2);
+    assert_eq!(plan.predicted, Target::Degrees(whole));
+}
+
+#[test]
+fn the_axis_is_no_dearer_than_looking_down() {
+    for name in ["brabec-room", "cornell", "cage"] {
+        let plan = planned(&built_in(name), "0.01");
+        let axis = &plan.choices[1].why;
+        let share = axis.split("looking down would be ").nth(1);
+        let percent = share.and_then(|text| text.split('%').next()?.parse::<u32>().ok());
+        assert!(percent.is_none_or(|percent| percent >= 100), "{name}: {axis}");
+    }
+}
+
+#[test]
+fn plans_survive_a_file_and_become_settings() {
+    let scene = built_in("brabec-room");
+    let plan = planned(&scene, "0.2deg");
+    let read: Plan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
+    assert_eq!(read, plan);
+    assert_eq!(read.check(&scene), Ok(()));
+    let settings = read.settings(&Settings::default()).unwrap();
+    let (size, near, far) = (settings.size, settings.near.unwrap(), settings.far.unwrap());
+    assert_eq!((size, near, far), (plan.size, plan.near, plan.far));
+    assert_eq!(settings.format, Format::D16);
+    assert_eq!(settings.depth_tolerance, Some(plan.depth_tolerance));
+    let bias = match settings.sampling {
+        Sampling::Nearest => Bias::TexelCentre,
+        Sampling::Linear => Bias::Footprint,
+    };
+    assert_eq!(settings.bias, bias);
+    let out = settings.casting.iter().filter(|casting| **casting == Casting::LeftOut).count();
+    assert_eq!((out, settings.casting.len()), (6, scene.meshes.len()));
+    assert_eq!(settings.casting[14], Casting::By(Method::Hybrid));
+}
+
+#[test]
+fn plans_that_do_not_fit_are_refused() {
+    let (scene, other) = (built_in("brabec-room"), built_in("cornell"));
+    let plan = planned(&scene, "0.2deg");
+    assert!(matches!(plan.check(&other), Err(PlanError::Scene { .. })));
+    let renamed = |mesh: usize| {
+        let mut plan = plan.clone();
+        plan.left_out[0].mesh = mesh;
+        plan.check(&scene)
+    };
+    assert!(matches!(renamed(1), Err(PlanError::Scene { .. })));
+    assert!(matches!(renamed(1_000), Err(PlanError::Scene { .. })));
+    assert_eq!(Plan { version: 9, ..plan.clone() }.check(&scene), Err(PlanError::Version(9)));
+    let base = Settings::default();
+    for (changed, what) in [
+        (Plan { filter: "pcf".into(), ..plan.clone() }, "filter"),
+        (Plan { format: "d64".into(), ..plan.clone() }, "format"),
+        (Plan { method: "vertex".into(), ..plan.clone() }, "method"),
+    ] {
+        let error = changed.settings(&base).unwrap_err();
+        assert!(error.to_string().contains(&format!("the plan's {what} `")), "{error}");
+    }
+}
+
+#[test]
+fn what_cannot_be_planned_says_why() {
+    let scene = floor_and_board(None);
+    let request = Request::new(&scene, target("0.2deg"));
+    let none = plan(&Request { lights: Vec::new(), ..request.clone() });
+    assert_eq!(none.unwrap_err(), PlanError::NoLight);
+    let away = Camera { target: vec3(6.0, 9.0, 6.0), ..scene.camera.unwrap() };
+    let unseen = plan(&Request { camera: Some(away), ..request.clone() });
+    assert_eq!(unseen.unwrap_err(), PlanError::NothingSeen);
+    for light in [Vec3::NAN, Vec3::splat(1e30)] {
+        let wrong = plan(&Request { lights: vec![light], ..request.clone() });
+        assert!(matches!(wrong.unwrap_err(), PlanError::Frame(_)));
+    }
+    let mut broken = scene.clone();
+    broken.meshes[0].triangles[0] = [0, 1, 99];
+    let wrong = plan(&Request::new(&broken, target("0.2deg")));
+    assert!(matches!(wrong.unwrap_err(), PlanError::Frame(_)));
+    let mut empty = scene.clone();
+    empty.meshes.clear();
+    assert!(plan(&Request::new(&empty, target("0.2deg"))).is_err());
+    // on a surface, and in a corner: a plan all the same
+    for light in [vec3(0.0, 0.0, 0.0), vec3(4.0, 0.0, 4.0)] {
+        assert!(plan(&Request { lights: vec![light], ..request.clone() }).is_ok());
+    }
+}
