@@ -6,6 +6,7 @@
 pub mod compare;
 pub mod data;
 mod html;
+mod noise;
 pub mod page;
 pub mod parameterisations;
 pub mod pareto;

@@ -155,8 +155,14 @@ fn machine(report: &Report) -> String {
         row("driver", &machine.driver),
         row("back-end", &machine.backend),
         row("system", &format!("{}, {} cores", machine.system, machine.cores)),
-        row("warm-up", &format!("{} runs of each variant, thrown away", report.timing.warm_up)),
-        row("repetitions", &format!("{}, the variants taking turns", report.timing.runs)),
+        row(
+            "warm-up",
+            &format!("runs of each variant that are thrown away: {}", report.timing.warm_up),
+        ),
+        row(
+            "repetitions",
+            &format!("runs that count: {}; the variants take turns", report.timing.runs),
+        ),
         row("typical spread", &spread(report)),
         row("an empty pass", &empty),
     ];
@@ -166,7 +172,13 @@ fn machine(report: &Report) -> String {
          small numbers beside one are its quartiles: half of all runs lie between them. A difference \
          smaller than that spread says little. The empty pass is what the clock shows when nothing is \
          drawn; no time near it means anything.</p>\n{}</section>\n",
-        table("machine-table", "", "What computed the figures", &["what", "value"], &rows.concat())
+        table(
+            "machine-table",
+            "facts",
+            "What computed the figures",
+            &["what", "value"],
+            &rows.concat()
+        )
     )
 }
 

@@ -81,14 +81,14 @@ fn axes<'a, 'b>(
         .margin(6)
         .margin_right(14)
         .x_label_area_size(54)
-        .y_label_area_size(70)
+        .y_label_area_size(74)
         .build_cartesian_2d(x.clone(), y.clone())?;
     chart
         .configure_mesh()
         .x_desc(x_name)
         .y_desc(y_name)
-        .label_style(text(18))
-        .axis_desc_style(text(19))
+        .label_style(text(20))
+        .axis_desc_style(text(21))
         .axis_style(INK.mix(0.5))
         .bold_line_style(INK.mix(0.15))
         .light_line_style(TRANSPARENT)

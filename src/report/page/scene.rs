@@ -14,7 +14,7 @@ pub fn section(scene: &SceneFigures, images: &[Image], ids: &SceneIds, software:
     let pictures: String = own.zip(&ids.images).map(|(image, id)| picture(image, id)).collect();
     let plots = Cost::ALL.iter().zip(&ids.plots);
     let plots: String = plots.map(|(cost, id)| plot(scene, *cost, id)).collect();
-    let [x, y, z] = scene.light.map(|c| number(f64::from(c)));
+    let [x, y, z] = scene.light;
     let kind = if scene.hemispherical {
         "a light with one hemisphere"
     } else {
@@ -112,7 +112,7 @@ fn legend(variants: &[Variant]) -> String {
     )
 }
 
-const HEAD: [&str; 18] = [
+const HEAD: [&str; 17] = [
     "row",
     "variant",
     "making, ms",
@@ -130,12 +130,11 @@ const HEAD: [&str; 18] = [
     "passes",
     "triangles drawn",
     "how it is read",
-    "dominated by",
 ];
 
 fn variants(variants: &[Variant], id: &str) -> String {
     let rows: String = variants.iter().enumerate().map(|(i, variant)| row(i, variant)).collect();
-    let caption = "Every variant. Grey ones are dominated: the variant named last is at least as \
+    let caption = "Every variant. Grey ones are dominated: the variant named below is at least as \
                    good in making, lookup, memory and misclassified points, and better in one.";
     table(id, "named", caption, &HEAD, &rows)
 }
@@ -167,12 +166,15 @@ fn row(i: usize, variant: &Variant) -> String {
     let read =
         [&variant.filter, &variant.bias, &variant.format].map(|text| escape(text)).join(", ");
     let class = if variant.dominated_by.is_empty() { "front" } else { "beaten" };
+    let beaten = match variant.dominated_by.as_str() {
+        "" => String::new(),
+        by => format!("<small>beaten by {}</small>", escape(by)),
+    };
     format!(
-        "<tr class=\"{class}\"><td>{}</td><th scope=\"row\">{}{sign}</th>{cells}\
-         <td class=\"text\">{read}</td><td class=\"text\">{}</td></tr>\n",
+        "<tr class=\"{class}\"><td>{}</td><th scope=\"row\">{}{sign}{beaten}</th>{cells}\
+         <td class=\"text\">{read}</td></tr>\n",
         i + 1,
-        escape(&variant.name),
-        escape(&variant.dominated_by)
+        escape(&variant.name)
     )
 }
 
@@ -201,6 +203,6 @@ fn sources(sources: &[Source], id: &str) -> String {
     format!(
         "<h3>Where the error comes from</h3>\n<p>What to look for: the source whose error is largest \
          is the one to work on. A measured figure should not exceed its bound.</p>\n{}",
-        table(id, "", caption, &head, &sources.iter().map(row).collect::<String>())
+        table(id, "sources", caption, &head, &sources.iter().map(row).collect::<String>())
     )
 }
