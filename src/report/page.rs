@@ -124,13 +124,13 @@ fn times(times: &Times) -> String {
     if low == high { median } else { format!("{median}<small>{low}–{high}</small>") }
 }
 
-/// A table's head and rows, that scrolls by itself where the page is narrow.
+/// What a table shows, and its head and rows, that scroll by themselves where the page is narrow.
 fn table(id: &str, class: &str, caption: &str, head: &[&str], rows: &str) -> String {
     let head: String = head.iter().map(|cell| format!("<th scope=\"col\">{cell}</th>")).collect();
     format!(
-        "<div class=\"scroll\" tabindex=\"0\" id=\"{id}\">\n<table class=\"{class}\">\n\
-         <caption>{caption}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n\
-         </table>\n</div>\n"
+        "<p class=\"soft\" id=\"{id}-about\">{caption}</p>\n<div class=\"scroll\" tabindex=\"0\" \
+         id=\"{id}\">\n<table class=\"{class}\" aria-describedby=\"{id}-about\">\n\
+         <thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n</div>\n"
     )
 }
 

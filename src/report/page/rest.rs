@@ -41,8 +41,12 @@ pub fn parameterisations(maps: &[Parameterisation], id: &str) -> String {
             or_infinite(map.anisotropy),
         ];
         let cells: String = cells.iter().map(|cell| format!("<td>{cell}</td>")).collect();
+        let name = escape(&map.name);
+        format!("<tr><th scope=\"row\">{name}</th>{cells}</tr>\n")
+    };
+    let note = |map: &Parameterisation| {
         let (name, note) = (escape(&map.name), escape(&map.note));
-        format!("<tr><th scope=\"row\">{name}</th>{cells}<td class=\"text\">{note}</td></tr>\n")
+        format!("<div><dt>{name}</dt><dd>{note}</dd></div>\n")
     };
     let head = [
         "map",
@@ -54,7 +58,6 @@ pub fn parameterisations(maps: &[Parameterisation], id: &str) -> String {
         "texels for equal largest",
         "texels for equal side",
         "longest side / shortest",
-        "to know",
     ];
     let caption = "Solid angles (steradians, sr) are for a map of one texel in all: divide them by \
                    the number of texels stored.";
@@ -72,7 +75,7 @@ pub fn parameterisations(maps: &[Parameterisation], id: &str) -> String {
          angle.</p>\n<figure class=\"wide\" id=\"{id}\">\n<ul class=\"legend\">{}{}</ul>{}\
          <figcaption><b>Texels needed for equal quality</b>What to look for: the shorter a bar, the \
          more a map makes of its memory. Texels times steradians, and times squared radians.\
-         </figcaption>\n</figure>\n{}</section>\n",
+         </figcaption>\n</figure>\n{}<dl>\n{}</dl>\n</section>\n",
         key(&hex(BARS[0]), "equal largest texel"),
         key(&hex(BARS[1]), "equal longest side"),
         plot::bars(maps),
@@ -82,7 +85,8 @@ pub fn parameterisations(maps: &[Parameterisation], id: &str) -> String {
             caption,
             &head,
             &maps.iter().map(row).collect::<String>()
-        )
+        ),
+        maps.iter().map(note).collect::<String>()
     )
 }
 

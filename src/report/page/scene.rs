@@ -134,7 +134,7 @@ const HEAD: [&str; 17] = [
 
 fn variants(variants: &[Variant], id: &str) -> String {
     let rows: String = variants.iter().enumerate().map(|(i, variant)| row(i, variant)).collect();
-    let caption = "Every variant. Grey ones are dominated: the variant named below is at least as \
+    let caption = "Every variant; a star is the plan's choice, squares are cubes. Grey ones are dominated: the variant named below is at least as \
                    good in making, lookup, memory and misclassified points, and better in one.";
     table(id, "named", caption, &HEAD, &rows)
 }
@@ -158,7 +158,7 @@ fn row(i: usize, variant: &Variant) -> String {
         number(error.edge_texels_median),
         number(error.edge_texels_largest),
         number(error.edge_degrees_largest),
-        format!("{} × {}²", variant.maps, variant.size),
+        format!("{}\u{a0}×\u{a0}{}²", variant.maps, variant.size),
         variant.passes.to_string(),
         count(variant.triangles as i64),
     ];
