@@ -61,8 +61,8 @@ fn texels_of_every_map_add_up_to_the_sphere() {
         let (texels, area) = texels(map);
         let sum: f64 = texels.iter().map(|&(image, at)| map.solid_angle(image, at) * area).sum();
         // the midpoint rule errs by h^2 / 24 of the second derivatives, at most 30 per unit of area
-        // here, in each direction; a disk's rim decides for at most 8 N texels a disk, half of which
-        // err by half a texel each in a random walk: 4 standard deviations
+        // here, in each direction; a disk's rim decides for at most 8 N texels a disk, half of
+        // which err by half a texel each in a random walk: 4 standard deviations
         let step = map.extent().max_element() * 2.0 / SIDE as f64;
         let rim = match map {
             Map::Sphere | Map::Paraboloids => 4.0 * (8.0 * SIDE as f64).sqrt() * 4.0 * area,

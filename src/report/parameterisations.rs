@@ -101,7 +101,8 @@ impl Map {
         })
     }
 
-    /// The longest and the shortest of all angles that a step of unit length turns the direction by.
+    /// The longest and the shortest of all angles that a step of unit length turns the direction
+    /// by.
     pub fn sides(self, image: usize, place: DVec2) -> [f64; 2] {
         match self {
             Self::Sphere => {
@@ -177,36 +178,36 @@ impl Map {
     fn note(self) -> &'static str {
         match self {
             Self::Sphere => {
-                "Every texel has the same solid angle, but towards the rim it becomes a sliver: the \
-                 whole rim is one direction, the one behind. Straight edges bow, and triangles \
+                "Every texel has the same solid angle, but towards the rim it becomes a sliver: \
+                 the whole rim is one direction, the one behind. Straight edges bow, and triangles \
                  across that direction cover a ring: nothing rasterises them in one pass as they \
                  are."
             }
             Self::LongitudeLatitude => {
-                "Fewest texels of all at an equal longest side, yet texels shrink to nothing at both \
-                 poles, straight edges bow, and a triangle over a pole or across the date line falls \
-                 apart; the lookup needs an arc tangent and an arc sine."
+                "Fewest texels of all at an equal longest side, yet texels shrink to nothing at \
+                 both poles, straight edges bow, and a triangle over a pole or across the date \
+                 line falls apart; the lookup needs an arc tangent and an arc sine."
             }
             Self::Cube => {
                 "Straight edges stay straight, so the rasteriser draws it as it is. It needs fewer \
                  texels than two paraboloids, and three times the passes."
             }
             Self::Paraboloids => {
-                "Paraboloids do not win on texels: a cube needs a quarter fewer for an equal largest \
-                 texel, and the corners of each square are unused. What they win on is passes, two, \
-                 and texels that are square everywhere and vary by 4 alone."
+                "Paraboloids do not win on texels: a cube needs a quarter fewer for an equal \
+                 largest texel, and the corners of each square are unused. What they win on is \
+                 passes, two, and texels that are square everywhere and vary by 4 alone."
             }
             Self::Octahedron => {
                 "Fewest texels of the maps that fill a square with flat pieces, judged by solid \
-                 angle; judged by their longest side more than paraboloids need, since texels lean. \
-                 Each of the eight faces is a perspective image of its own, or a cube is made first \
-                 and resampled."
+                 angle; judged by their longest side more than paraboloids need, since texels \
+                 lean. Each of the eight faces is a perspective image of its own, or a cube is \
+                 made first and resampled."
             }
             Self::Tetrahedron => {
                 "Four perspective images whose axes halve the angle between a face's base and its \
                  apex, 143.99 by 125.26 degrees wide, each filling a quarter of a square: no texel \
-                 is unused, but angles that wide make texels at the corners 53 times smaller than in \
-                 the middle."
+                 is unused, but angles that wide make texels at the corners 53 times smaller than \
+                 in the middle."
             }
         }
     }

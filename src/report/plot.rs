@@ -16,7 +16,8 @@ pub use scatter::{Cost, speed_error};
 const SIZE: (u32, u32) = (480, 400);
 const INK: RGBColor = BLACK;
 
-/// Colours that those who see few can tell apart (Okabe and Ito), for what has no colour of its own.
+/// Colours that those who see few can tell apart (Okabe and Ito), for what has no colour of its
+/// own.
 const PALETTE: [RGBColor; 6] = [
     RGBColor(0, 158, 115),
     RGBColor(213, 94, 0),

@@ -9,7 +9,8 @@ const HEAD: [&str; 7] = ["section", "scene", "variant", "at", "figure", "value",
 
 /// The table. A spreadsheet or pandas pivots it: `figure` names a field of report.json by its path
 /// within its scene, variant, source, map or curve; `at` is a curve's place on its horizontal axis,
-/// its plot's title stands under `scene` and its name under `variant`. What is null in report.json is an empty value.
+/// its plot's title stands under `scene` and its name under `variant`. What is null in report.json
+/// is an empty value.
 ///
 /// # Errors
 ///

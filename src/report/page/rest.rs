@@ -62,20 +62,21 @@ pub fn parameterisations(maps: &[Parameterisation], id: &str) -> String {
     let caption = "Solid angles (steradians, sr) are for a map of one texel in all: divide them by \
                    the number of texels stored.";
     format!(
-        "<section id=\"parameterisations\">\n<h2>Ways to store all directions</h2>\n<p>A point light \
-         needs a flat map of all directions, and no flat map shows them all alike, as no map of the \
-         Earth does. The worst place decides how coarse a shadow can become: so here is how many \
-         texels each map stores when its largest texel covers the same solid angle, and when the \
-         longest side of any texel spans the same angle. Fewer is better. All figures are computed \
-         from the maps' equations.</p>\n\
+        "<section id=\"parameterisations\">\n<h2>Ways to store all directions</h2>\n<p>A point \
+         light needs a flat map of all directions, and no flat map shows them all alike, as no \
+         map of the Earth does. The worst place decides how coarse a shadow can become: so here \
+         is how many texels each map stores when its largest texel covers the same solid angle, \
+         and when the longest side of any texel spans the same angle. Fewer is better. All \
+         figures are computed from the maps' equations.</p>\n\
          <p><b>Paraboloids do not win on texels.</b> A cube needs a quarter fewer, and the corners \
-         of both squares, 21.5% of what is stored, are unused. Paraboloids win on passes: two, where \
-         the other maps that a rasteriser can draw take four to eight. And they win on uniformity: a \
-         texel is square wherever it is, and the largest has only four times the smallest's solid \
-         angle.</p>\n<figure class=\"wide\" id=\"{id}\">\n<ul class=\"legend\">{}{}</ul>{}\
-         <figcaption><b>Texels needed for equal quality</b>What to look for: the shorter a bar, the \
-         more a map makes of its memory. Texels times steradians, and times squared radians.\
-         </figcaption>\n</figure>\n{}<dl>\n{}</dl>\n</section>\n",
+         of both squares, 21.5% of what is stored, are unused. Paraboloids win on passes: two, \
+         where the other maps that a rasteriser can draw take four to eight. And they win on \
+         uniformity: a texel is square wherever it is, and the largest has only four times the \
+         smallest's solid angle.</p>\n<figure class=\"wide\" id=\"{id}\">\n<ul \
+         class=\"legend\">{}{}</ul>{}<figcaption><b>Texels needed for equal quality</b>What to \
+         look for: the shorter a bar, the more a map makes of its memory. Texels times \
+         steradians, and times squared \
+         radians.</figcaption>\n</figure>\n{}<dl>\n{}</dl>\n</section>\n",
         key(&hex(BARS[0]), "equal largest texel"),
         key(&hex(BARS[1]), "equal longest side"),
         plot::bars(maps),
@@ -106,9 +107,9 @@ pub fn costs(costs: &[Curves], ids: &[String], software: bool) -> String {
     };
     let figures: String = costs.iter().zip(ids).map(figure).collect();
     format!(
-        "<section id=\"costs\">\n<h2>What makes it slower</h2>\n<p>Both axes are logarithmic: equal \
-         steps multiply by equal factors. Dots are medians, vertical lines reach from one quartile \
-         to the other.</p>\n{}<div class=\"grid\">\n{figures}</div>\n</section>\n",
+        "<section id=\"costs\">\n<h2>What makes it slower</h2>\n<p>Both axes are logarithmic: \
+         equal steps multiply by equal factors. Dots are medians, vertical lines reach from one \
+         quartile to the other.</p>\n{}<div class=\"grid\">\n{figures}</div>\n</section>\n",
         warning(software)
     )
 }

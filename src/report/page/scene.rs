@@ -21,9 +21,10 @@ pub fn section(scene: &SceneFigures, images: &[Image], ids: &SceneIds, software:
         "an omnidirectional light"
     };
     format!(
-        "<section id=\"{}\">\n<h2>Scene: {}</h2>\n<p>{} {} triangles, {kind} at ({x}, {y}, {z}); {} \
-         points that the camera sees are judged (seed {}).</p>\n<div class=\"grid\">\n{pictures}</div>\n\
-         <h3>Speed against error</h3>\n{}{}<div class=\"grid\">\n{plots}</div>\n{}{}{}</section>\n",
+        "<section id=\"{}\">\n<h2>Scene: {}</h2>\n<p>{} {} triangles, {kind} at ({x}, {y}, {z}); \
+         {} points that the camera sees are judged (seed {}).</p>\n<div \
+         class=\"grid\">\n{pictures}</div>\n<h3>Speed against error</h3>\n{}{}<div \
+         class=\"grid\">\n{plots}</div>\n{}{}{}</section>\n",
         ids.section,
         escape(&scene.name),
         escape(&scene.about),
@@ -99,7 +100,8 @@ fn legend(variants: &[Variant]) -> String {
         ),
         shape(&format!("<rect x=\"3\" y=\"3\" width=\"18\" height=\"18\" {outline}/>"), "a cube"),
         shape(
-            "<path d=\"M12 0 15 8 24 9 17 14 19 23 12 18 5 23 7 14 0 9 9 8Z\" fill=\"currentColor\"/>",
+            "<path \
+             fill=\"currentColor\" d=\"M12 0 15 8 24 9 17 14 19 23 12 18 5 23 7 14 0 9 9 8Z\"/>",
             "what <code>dpsm plan</code> chooses",
         ),
         shape(&format!("<path d=\"M0 3H10V20H24\" {outline}/>"), "Pareto front of the plot"),
@@ -107,7 +109,8 @@ fn legend(variants: &[Variant]) -> String {
     format!(
         "<ul class=\"legend\">\n{colors}{}</ul>\n<p class=\"soft\">A number beside a mark is the \
          variant's row in the table below. A vertical line through it joins the quartiles of its \
-         time. Axes are logarithmic; what has no error at all stands left of the dashed line.</p>\n",
+         time. Axes are logarithmic; what has no error at all stands left of the dashed \
+         line.</p>\n",
         shapes.concat()
     )
 }
@@ -134,8 +137,9 @@ const HEAD: [&str; 17] = [
 
 fn variants(variants: &[Variant], id: &str) -> String {
     let rows: String = variants.iter().enumerate().map(|(i, variant)| row(i, variant)).collect();
-    let caption = "Every variant; a star is the plan's choice, squares are cubes. Grey ones are dominated: the variant named below is at least as \
-                   good in making, lookup, memory and misclassified points, and better in one.";
+    let caption = "Every variant; a star is the plan's choice, squares are cubes. Grey ones are \
+                   dominated: the variant named below is at least as good in making, lookup, \
+                   memory and misclassified points, and better in one.";
     table(id, "named", caption, &HEAD, &rows)
 }
 
@@ -201,8 +205,8 @@ fn sources(sources: &[Source], id: &str) -> String {
     let head = ["source", "largest measured", "bound or prediction", "unit", "variant"];
     let caption = "One source at a time, all others exact.";
     format!(
-        "<h3>Where the error comes from</h3>\n<p>What to look for: the source whose error is largest \
-         is the one to work on. A measured figure should not exceed its bound.</p>\n{}",
+        "<h3>Where the error comes from</h3>\n<p>What to look for: the source whose error is \
+         largest is the one to work on. A measured figure should not exceed its bound.</p>\n{}",
         table(id, "sources", caption, &head, &sources.iter().map(row).collect::<String>())
     )
 }

@@ -63,7 +63,8 @@ pub fn speed_error(scene: &SceneFigures, cost: Cost) -> String {
     let names: Vec<&str> = front.iter().map(|&i| scene.variants[i].name.as_str()).collect();
     let title = format!("{}: error against {}", scene.name, cost.axis());
     let about = format!(
-        "Each mark is a variant; less is better on both axes. Pareto front, from the least error: {}",
+        "Each mark is a variant; less is better on both axes. Pareto front, from the least error: \
+         {}",
         names.join("; ")
     );
     svg(SIZE, &title, &about, |area| {
