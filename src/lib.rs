@@ -33,6 +33,8 @@ pub mod plan;
 pub mod reflect;
 #[cfg(feature = "scene")]
 pub mod render;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod scalar;
 #[cfg(feature = "scene")]
 pub mod scene;
