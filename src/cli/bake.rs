@@ -37,6 +37,15 @@ impl BakeArguments {
     /// Refuses an output that is no EXR file, before there is anything to write.
     pub fn check(&self) -> Result<(), CliError> {
         let path = &self.output;
+        if let Some(plan) = &self.setup.plan
+            && path.with_extension("json") == *plan
+        {
+            let (path, plan) = (path.display(), plan.display());
+            let message = format!(
+                "{path}'s parameters would replace the plan {plan}; choose another name with -o"
+            );
+            return Err(CliError::Usage(message));
+        }
         match path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("exr")) {
             true => Ok(()),
             false => {

@@ -47,7 +47,7 @@ pub struct SetupArguments {
             "linear_taps", "bias", "constant_bias", "near", "far",
         ]
     )]
-    plan: Option<PathBuf>,
+    pub plan: Option<PathBuf>,
     /// Texels along a side of a map; a cube's faces have half as many, for texels as fine
     #[arg(long, default_value_t = Settings::default().size)]
     size: u32,
