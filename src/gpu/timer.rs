@@ -107,3 +107,39 @@ impl Device {
         })
     }
 }
+
+/// What is timed in turn: a name and what to record.
+pub type Timed<'a> = (&'a str, &'a dyn Fn(&mut wgpu::CommandEncoder, Stamps<'_>));
+
+impl Device {
+    /// Times of each variant, `runs` of them after `warm_up` that are thrown away, as the first one
+    /// compiles; the variants take turns, so that all meet the same load.
+    pub fn time_in_turn(
+        &self,
+        variants: &[Timed<'_>],
+        warm_up: u32,
+        runs: u32,
+    ) -> Result<Vec<Vec<Duration>>, GpuError> {
+        let mut times = vec![Vec::new(); variants.len()];
+        for run in 0..warm_up + runs {
+            for ((name, record), times) in variants.iter().zip(&mut times) {
+                let time = self.time(name, record)?;
+                if run >= warm_up {
+                    times.extend(time);
+                }
+            }
+        }
+        Ok(times)
+    }
+}
+
+/// Least, lower quartile, median and upper quartile in seconds; 0 of none.
+pub fn quartiles(times: &[Duration]) -> [f64; 4] {
+    let mut times = times.to_vec();
+    times.sort();
+    let at = |quarter: usize| {
+        let place = times.len().saturating_sub(1) * quarter / 4;
+        times.get(place).map_or(0.0, Duration::as_secs_f64)
+    };
+    [0, 1, 2, 3].map(at)
+}
