@@ -31,6 +31,8 @@ pub mod measure;
 pub mod reflect;
 #[cfg(feature = "scene")]
 pub mod render;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod scalar;
 #[cfg(feature = "scene")]
 pub mod scene;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use dpsm::gpu::GpuError;
 use dpsm::link::LinkError;
 use dpsm::render::FrameError;
+use dpsm::report::ReportError;
 use dpsm::scene::SceneError;
 use dpsm::validate::ValidateError;
 
@@ -76,6 +77,17 @@ pub enum CliError {
         /// Why.
         source: image::ImageError,
     },
+}
+
+impl From<ReportError> for CliError {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::Gpu(error) => error.into(),
+            ReportError::Frame(error) => error.into(),
+            ReportError::Scene(error) => error.into(),
+            ReportError::Picture(source) => Self::Encode { path: "a picture".into(), source },
+        }
+    }
 }
 
 impl CliError {
