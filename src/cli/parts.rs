@@ -7,8 +7,8 @@ use dpsm::report::data::{Image, Machine, Report, Timing, VERSION};
 use dpsm::report::{self, Effort, Part, Subject, page, parameterisations, table};
 
 use super::CliError;
+use super::measure::pretty;
 use super::output::Outputs;
-use super::report::json;
 
 /// The name of the part that is no scene.
 pub const COSTS: &str = "costs";
@@ -104,10 +104,12 @@ impl Parts {
             wanted.part = Some(part);
         }
         let (report, images) = self.report();
-        let [html, json_path, csv] = self.outputs();
+        let [html, json, csv_path] = self.outputs();
         outputs.add(&html, page::page(&report, &images).into())?;
-        outputs.add(&json_path, json(&report)?)?;
-        outputs.add(&csv, table::csv(&report).into())?;
+        outputs.add(&json, pretty(&report)?.into())?;
+        let broken =
+            |error: csv::Error| CliError::Usage(format!("cannot write the table: {error}"));
+        outputs.add(&csv_path, table::csv(&report).map_err(broken)?)?;
         outputs.finish().map(drop)
     }
 

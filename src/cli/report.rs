@@ -12,7 +12,6 @@ use dpsm::scene::{self, BUILT_IN, Options};
 use glam::Vec3;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::measure::pretty;
 use super::output::{print, read_text};
 use super::parts::{COSTS, Parts};
 use super::render::parse_size;
@@ -188,26 +187,19 @@ fn made(
 /// What changed between two reports, where that is asked.
 pub fn compared(arguments: &ReportArguments) -> Result<Option<String>, CliError> {
     let Some([a, b]) = arguments.compare.as_deref() else { return Ok(None) };
-    Ok(Some(compare::compare(&read(a)?, &read(b)?)))
+    let text = compare::compare(&read(a)?, &read(b)?);
+    text.map(Some).map_err(|error| CliError::Usage(error.to_string()))
 }
 
 /// Reads a report.json.
 fn read(path: &Path) -> Result<Report, CliError> {
     let text = read_text(path)?;
-    let bad = |why: String| {
+    serde_json::from_str(&text).map_err(|error| {
         let path = path.display();
-        CliError::Usage(format!(
-            "{path} is no report.json of this program: {why}; name one that `dpsm report` wrote"
-        ))
-    };
-    let report: Report = serde_json::from_str(&text).map_err(|error| bad(error.to_string()))?;
-    match report.version {
-        report::data::VERSION => Ok(report),
-        other => Err(bad(format!("its version is {other}, not {}", report::data::VERSION))),
-    }
-}
-
-/// The report as JSON.
-pub fn json(report: &Report) -> Result<Vec<u8>, CliError> {
-    pretty(report).map(String::into_bytes)
+        let message = format!(
+            "{path} is no report.json of this version of dpsm: {error}; name one that `dpsm \
+             report` wrote"
+        );
+        CliError::Usage(message)
+    })
 }

@@ -207,7 +207,9 @@ pub struct Parameterisation {
     pub ratio: Option<f64>,
     /// Texels stored for a largest texel of 1 sr, so that figures are texels times steradians.
     pub texels_for_equal_largest: f64,
-    /// Largest ratio of a texel's sides as angles.
+    /// The same for a longest side of 1 rad, taken in any direction; `None` where it is infinite.
+    pub texels_for_equal_side: Option<f64>,
+    /// Largest ratio of a texel's sides as angles; `None` where it is infinite.
     pub anisotropy: Option<f64>,
     /// What to know about it.
     pub note: String,
