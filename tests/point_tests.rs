@@ -2,7 +2,7 @@
 
 #![cfg(feature = "gpu")]
 
-use dpsm::gpu::{self, Device, MeshBuffers, PointTests, ShadowMaps};
+use dpsm::gpu::{self, Device, MeshBuffers, Parts, PointTests, ShadowMaps};
 use dpsm::measure::{Bench, truth_of};
 use dpsm::render::{Bias, Filter, Frame, Kernel, Method, Settings, Taps};
 use dpsm::scalar::maps::Sampling;
@@ -77,8 +77,44 @@ fn points_are_judged_as_by_the_ports_and_take_time() {
         let ns = median * 1e9 / *points as f64;
         println!("{ns} ns a point");
         // a thousand cores of a GHz do a test of ten instructions in 10 ps; one core of a software
-        // adapter in nanoseconds, unless its timestamps miss the work
+        // adapter in nanoseconds
         let software = device.describe().contains("a software adapter");
         assert!(times.len() == 5 && ns > if software { 2.0 } else { 1e-3 }, "{ns} ns a point");
     }
+}
+
+#[test]
+fn times_include_compute_passes_before_draws() {
+    let Ok(device) = Device::open() else { return println!("skipped: no adapter") };
+    let scene = scene::dozen(100_000);
+    let light = scene.default_light();
+    let camera = scene.default_camera(light.position);
+    let settings = Settings { size: 256, ..Settings::default() };
+    let frame = Frame::new(&scene, light.position, Vec3::NEG_Y, false, &camera, settings).unwrap();
+    let mesh = MeshBuffers::new(&device, &frame).unwrap();
+    let maps = ShadowMaps::new(&device, &frame, &mesh).unwrap();
+    let parts =
+        [Parts::ALL, Parts { draw: false, ..Parts::ALL }, Parts { sort: false, ..Parts::ALL }];
+    let record = |parts| {
+        let (maps, mesh) = (&maps, &mesh);
+        move |encoder: &mut wgpu::CommandEncoder, stamps: gpu::Stamps<'_>| {
+            maps.record_parts(encoder, mesh, stamps, parts);
+        }
+    };
+    let records = parts.map(record);
+    let timed: Vec<gpu::Timed<'_>> =
+        records.iter().map(|record| ("sorting and drawing", record as _)).collect();
+    let times = device.time_in_turn(&timed, 1, 9).unwrap();
+    let [all, sort, draw] = [0, 1, 2].map(|i| gpu::quartiles(&times[i])[2] * 1e3);
+    println!("{all} ms for {sort} and {draw}");
+    // what is sorted is needed to draw: nothing overlaps
+    assert!(all > 0.75 * (sort + draw), "{all} ms for {sort} and {draw}");
+}
+
+#[test]
+fn quartiles_are_those_of_the_sorted_times() {
+    let times = [5, 1, 4, 2, 3].map(std::time::Duration::from_secs);
+    assert_eq!(gpu::quartiles(&times), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!(gpu::quartiles(&times[..1]), [5.0; 4]);
+    assert_eq!(gpu::quartiles(&[]), [0.0; 4]);
 }

@@ -120,7 +120,7 @@ fn check(report: &Report, runs: u32) {
             assert!(e.edge_texels_median <= e.edge_texels_largest, "{name}: {e:?}");
             // straight edges between 2 triangles' corners may be wrong anywhere
             let right = ["exact", "hybrid", "cube"].contains(&variant.method.as_str());
-            assert!(!right || e.faults < 0.01 && e.misclassified() < 0.25, "{name}: {e:?}");
+            assert!(!right || e.faults < 0.01 && e.misclassified() < 0.5, "{name}: {e:?}");
             match variant.dominated_by.as_str() {
                 "" => {
                     let better = scene.variants.iter().find(|other| beats(other, variant));
@@ -186,7 +186,7 @@ fn ports_report_on_scenes_with_one_hemisphere_and_with_two() {
     // walls of two triangles: the original method cannot, the default can
     let error = |name: &str| room.variants.iter().find(|v| v.name == name).unwrap().error;
     assert_eq!(error("hybrid 64").faults, 0.0);
-    assert!(error("vertex 64").faults > 0.0);
+    assert!(error("fragment-depth 32").faults > 0.1);
     let html = std::fs::read_to_string(folder.join("dpsm-report/report.html")).unwrap();
     // of a hemisphere its map and its view; lit twice, and the errors of three methods
     assert_eq!(html.matches("data:image/png;base64,").count(), (2 + 2 + 3) + (2 + 4 + 3));

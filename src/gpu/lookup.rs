@@ -85,8 +85,8 @@ pub struct PointTests {
     module: wgpu::ShaderModule,
 }
 
-/// The shadow test of a frame's filter and bias at each of some points, and nothing else: a pixel a
-/// point. Drawn, as lavapipe's timestamps miss the work of compute passes.
+/// The shadow test of a frame's filter and bias at each of some points, and nothing else; drawn, a
+/// pixel a point, as renderers do.
 #[derive(Debug)]
 pub struct PointTest {
     pipeline: wgpu::RenderPipeline,

@@ -144,12 +144,12 @@ impl Verdict {
     fn colour(self) -> [u8; 4] {
         let [r, g, b] = match self {
             Self::Nothing => [0, 0, 0],
-            Self::Lit => [205, 205, 205],
+            Self::Lit => [228, 228, 228],
             Self::Dark => [95, 95, 95],
             Self::FalseShadow { edge: false } => [213, 94, 0],
-            Self::FalseShadow { edge: true } => [240, 190, 150],
+            Self::FalseShadow { edge: true } => [240, 170, 110],
             Self::FalseLight { edge: false } => [0, 114, 178],
-            Self::FalseLight { edge: true } => [150, 200, 230],
+            Self::FalseLight { edge: true } => [120, 185, 228],
         };
         [r, g, b, 255]
     }
