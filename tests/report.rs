@@ -5,7 +5,7 @@
 #[path = "report/fixture.rs"]
 mod fixture;
 
-use dpsm::report::compare::{CompareError, compare};
+use dpsm::report::compare::{CompareError, compare, read};
 use dpsm::report::data::{Report, Times, VERSION, Variant};
 use dpsm::report::pareto;
 use dpsm::report::table::csv;
@@ -238,6 +238,16 @@ fn what_cannot_be_compared_is_named() {
 fn reports_of_another_version_are_refused() {
     let (a, mut b) = (report(), report());
     b.version = VERSION + 1;
-    let CompareError::Version { name, found } = compare(&a, &b).unwrap_err();
-    assert_eq!((name, found), ("B", VERSION + 1));
+    let refused = |error| match error {
+        CompareError::Version { name, found } => (name, found),
+        CompareError::Json { .. } => panic!("{error}"),
+    };
+    assert_eq!(refused(compare(&a, &b).unwrap_err()), ("B", VERSION + 1));
+    // also where its fields are others
+    let other = format!("{{\"version\": {}, \"pictures\": []}}", VERSION + 1);
+    let older = read("A", &other).unwrap_err();
+    assert_eq!(refused(older), ("A", VERSION + 1));
+    assert!(matches!(read("A", "{}"), Err(CompareError::Json { .. })));
+    let json = serde_json::to_string(&a).unwrap();
+    assert!(read("A", &json).unwrap() == a);
 }

@@ -282,7 +282,10 @@ fn bad_input_is_refused_before_anything_is_written() {
         (&["cornell", "--image", "0x4"], &["image width 0", "1 to"]),
         (&["cornell", "--light", "nan,0,0"], &["float range"]),
         (&["--compare", "missing.json", "foreign.json"], &["missing.json", "check the path"]),
-        (&["--compare", "foreign.json", "foreign.json"], &["foreign.json is no report.json"]),
+        (
+            &["--compare", "foreign.json", "foreign.json"],
+            &["foreign.json: report A cannot be read", "that `dpsm report` wrote"],
+        ),
     ];
     for (arguments, parts) in cases {
         let output = run(&folder, &[&["report"], arguments].concat());

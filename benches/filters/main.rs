@@ -212,18 +212,21 @@ fn times(device: &Device) -> Result<(), GpuError> {
         let bytes = |words: usize| (words * 4) as u64;
         let input = &device.upload("pixels", bytemuck::cast_slice(&words), Usage::STORAGE)?;
         let output = &device.buffer("visibilities", bytes(records), Usage::STORAGE)?;
-        let record = |(index, evaluator): (usize, &Evaluator<'_>)| {
-            let sampler = &samplers[usize::from(VARIANTS[index].1 == Sampling::Linear)];
-            let resources = Some(Resources { texture: &view, sampler });
-            move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
-                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: None,
-                    timestamp_writes: compute_writes(stamps, ALONE),
-                });
-                evaluator.record(&mut pass, input, output, records, resources);
-            }
-        };
-        let timed: Vec<_> = evaluators.iter().enumerate().map(record).collect();
+        let timed: Vec<_> = evaluators
+            .iter()
+            .enumerate()
+            .map(|(index, evaluator)| {
+                let sampler = &samplers[usize::from(VARIANTS[index].1 == Sampling::Linear)];
+                let resources = Some(Resources { texture: &view, sampler });
+                move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
+                    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                        label: None,
+                        timestamp_writes: compute_writes(stamps, ALONE),
+                    });
+                    evaluator.record(&mut pass, input, output, records, resources);
+                }
+            })
+            .collect();
         let timed: Vec<Timed<'_>> = timed.iter().map(|record| ("filter", record as _)).collect();
         let times = device.time_in_turn(&timed, 1, RUNS)?;
         println!("\n{place}\n\n| filter | ns a pixel | quartiles | ratio | to |");

@@ -92,13 +92,14 @@ pub fn time(
         // fills the lists that are kept
         device.time(&variant.name, |encoder, stamps| variant.maps.record(encoder, mesh, stamps))?;
     }
-    let record = |variant: &'_ Variant| {
-        let (maps, parts) = (&variant.maps, variant.parts);
-        move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
-            maps.record_parts(encoder, mesh, stamps, parts);
-        }
-    };
-    let records: Vec<_> = variants.iter().map(record).collect();
+    let records: Vec<_> = variants
+        .iter()
+        .map(|variant| {
+            move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
+                variant.maps.record_parts(encoder, mesh, stamps, variant.parts);
+            }
+        })
+        .collect();
     let timed: Vec<Timed<'_>> =
         variants.iter().zip(&records).map(|(v, record)| (v.name.as_str(), record as _)).collect();
     let times = device.time_in_turn(&timed, 1, runs as u32)?;

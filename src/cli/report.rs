@@ -187,19 +187,14 @@ fn made(
 /// What changed between two reports, where that is asked.
 pub fn compared(arguments: &ReportArguments) -> Result<Option<String>, CliError> {
     let Some([a, b]) = arguments.compare.as_deref() else { return Ok(None) };
-    let text = compare::compare(&read(a)?, &read(b)?);
+    let text = compare::compare(&read("A", a)?, &read("B", b)?);
     text.map(Some).map_err(|error| CliError::Usage(error.to_string()))
 }
 
 /// Reads a report.json.
-fn read(path: &Path) -> Result<Report, CliError> {
-    let text = read_text(path)?;
-    serde_json::from_str(&text).map_err(|error| {
+fn read(name: &'static str, path: &Path) -> Result<Report, CliError> {
+    compare::read(name, &read_text(path)?).map_err(|error| {
         let path = path.display();
-        let message = format!(
-            "{path} is no report.json of this version of dpsm: {error}; name one that `dpsm \
-             report` wrote"
-        );
-        CliError::Usage(message)
+        CliError::Usage(format!("{path}: {error}; name a report.json that `dpsm report` wrote"))
     })
 }

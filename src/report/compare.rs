@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use serde::Deserialize;
+
 use super::data::{Report, SceneFigures, Times, VERSION, Variant};
 use super::html::number;
 use super::noise::{FALSE_ALARM, FEWEST_RUNS, SMALLEST_CHANGE, chance_of_counts, chance_of_times};
@@ -18,6 +20,31 @@ pub enum CompareError {
         /// Its version.
         found: u32,
     },
+    /// No report.
+    #[error("report {name} cannot be read: {source}")]
+    Json {
+        /// Which: A or B.
+        name: &'static str,
+        /// Why.
+        source: serde_json::Error,
+    },
+}
+
+/// A report from the text of a report.json.
+///
+/// # Errors
+///
+/// A text that holds none, or one of another [`VERSION`], whatever else that has.
+pub fn read(name: &'static str, json: &str) -> Result<Report, CompareError> {
+    #[derive(Deserialize)]
+    struct Versioned {
+        version: u32,
+    }
+    let fault = |source| CompareError::Json { name, source };
+    match serde_json::from_str::<Versioned>(json).map_err(fault)?.version {
+        found if found != VERSION => Err(CompareError::Version { name, found }),
+        _ => serde_json::from_str(json).map_err(fault),
+    }
 }
 
 /// A figure of both reports that may have changed.
