@@ -54,7 +54,8 @@ impl Parts {
         Ok(Self { folder: folder.into(), machine, timing, parts })
     }
 
-    /// Takes the parts that an earlier run has finished. Others are named on stderr, and made again.
+    /// Takes the parts that an earlier run has finished. Others are named on stderr, to be made
+    /// again.
     pub fn take_up(&mut self) {
         for wanted in &mut self.parts {
             let path = path(&self.folder, &wanted.name);

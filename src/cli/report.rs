@@ -20,6 +20,8 @@ use super::{AdapterChoice, CliError, describe, parse_vector};
 /// Where a report goes unless another folder is named.
 pub const FOLDER: &str = "dpsm-report";
 
+const SMALLEST: i64 = Effort::SMALLEST as i64;
+
 /// Report on scenes: speed and error of every method, size and filter, with pictures
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -28,7 +30,7 @@ parts/SCENE.json as each scene is finished. An interrupted run leaves a report o
 run again, it takes up parts that the same program made of the same scene with the same adapter and
 options, and does the rest. docs/report.md explains each figure.
 
-The ports (--adapter cpu) are slow: smaller maps, fewer variants, points and runs, two kinds of cost.
+The ports (--adapter cpu) are slow: smaller maps, fewer variants, points, runs and kinds of cost.
 
 Examples:
   dpsm report
@@ -53,7 +55,7 @@ pub struct ReportArguments {
     walls: u32,
     /// Texels along a side of the largest maps, the others having half and a quarter; by default
     /// 1024, or 256 by the ports
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(Effort::SMALLEST as i64..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(SMALLEST..))]
     size: Option<u32>,
     /// Width and height of the pictures
     #[arg(long, value_name = "WxH", value_parser = parse_size)]

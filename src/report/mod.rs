@@ -1,8 +1,8 @@
 //! What speed and what error each way to shadows has: the figures, and what shows them.
 //!
 //! [`scene()`] measures one scene and [`costs()`] what cost grows with. [`data`] holds every figure
-//! as report.json does. [`page`] makes one HTML file of it, [`table`] one CSV table, and [`compare`]
-//! says what changed between two reports; docs/report.md.
+//! as report.json does. [`page`] makes one HTML file of it, [`table`] one CSV table, and
+//! [`mod@compare`] says what changed between two reports; docs/report.md.
 
 pub mod compare;
 mod costs;

@@ -31,7 +31,7 @@ pub fn pictures(
     let Rendering { lit, maps: stored, views, .. } = render(job, &frame)?;
     let caption = format!(
         "The scene lit by the default method, hybrid, with maps of {size} x {size} texels. Shadows \
-         should begin where their casters touch the ground and have straight edges where casters do."
+         should begin where casters touch the ground, with straight edges where casters have them."
     );
     gallery.add("lit", "Lit, hybrid method", caption, &lit)?;
     let by_vertex = subject.frame(&pictured(Method::Vertex))?;
@@ -52,7 +52,7 @@ pub fn pictures(
         gallery.add(&format!("{name}-view"), &format!("{name} hemisphere"), caption, view)?;
         let Some(stored) = &stored else { continue };
         let caption = format!(
-            "The {name} map as it is stored: the distance to the nearest surface in each direction, \
+            "The {name} map as it is stored: the distance to the nearest surface by direction, \
              black at the near sphere and white at the far one or where there is nothing. A point \
              is in shadow where its own distance is larger."
         );
