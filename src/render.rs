@@ -4,12 +4,14 @@ mod error;
 mod extent;
 mod filter;
 mod meshes;
+mod picture;
 mod projection;
 mod settings;
 
 pub use error::FrameError;
 pub use extent::Extent;
 pub(crate) use extent::{common, nearest_of};
+pub use picture::Picture;
 pub use projection::{Projection, texel};
 pub use settings::{
     Bias, Casting, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings,
@@ -96,17 +98,6 @@ pub struct Frame {
     pub view: View,
     /// The settings that the frame was made with.
     pub settings: Settings,
-}
-
-/// A picture: sRGB bytes, row by row from the top.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Red, green, blue, alpha.
-    pub pixels: Vec<[u8; 4]>,
 }
 
 /// A rendering.
@@ -303,13 +294,6 @@ impl View {
             near: (towards.length() * CAMERA_NEAR_SHARE) as f32,
             scale: [(cotangent * f64::from(height) / f64::from(width)) as f32, cotangent as f32],
         })
-    }
-}
-
-impl Picture {
-    /// The RGBA bytes.
-    pub fn bytes(&self) -> &[u8] {
-        self.pixels.as_flattened()
     }
 }
 

@@ -5,17 +5,16 @@
 mod page;
 mod spirv;
 
-use std::time::Duration;
-
 use dpsm::gpu::{
-    ALONE, Device, Evaluator, GpuError, Resources, Texels, comparison_sampler, compute_writes,
+    self, ALONE, Device, Evaluator, GpuError, Resources, Stamps, Texels, Timed, comparison_sampler,
+    compute_writes,
 };
 use dpsm::render::Format;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use wgpu::BufferUsages as Usage;
 
 /// Timed runs of each variant, after one that is thrown away; variants take turns.
-const RUNS: usize = 15;
+const RUNS: u32 = 15;
 
 /// Pixels along a side: neighbours look at neighbouring texels, as on a wall.
 const SIDE: usize = 512;
@@ -211,28 +210,34 @@ fn times(device: &Device) -> Result<(), GpuError> {
         let words = wall(seam);
         let records = SIDE * SIDE;
         let bytes = |words: usize| (words * 4) as u64;
-        let input = device.upload("pixels", bytemuck::cast_slice(&words), Usage::STORAGE)?;
-        let output = device.buffer("visibilities", bytes(records), Usage::STORAGE)?;
-        let mut all: Vec<Vec<Duration>> = vec![Vec::new(); VARIANTS.len()];
-        for run in 0..=RUNS {
-            for (index, evaluator) in evaluators.iter().enumerate() {
+        let input = &device.upload("pixels", bytemuck::cast_slice(&words), Usage::STORAGE)?;
+        let output = &device.buffer("visibilities", bytes(records), Usage::STORAGE)?;
+        let timed: Vec<_> = evaluators
+            .iter()
+            .enumerate()
+            .map(|(index, evaluator)| {
                 let sampler = &samplers[usize::from(VARIANTS[index].1 == Sampling::Linear)];
-                let time = device.time("filter", |encoder, stamps| {
+                let resources = Some(Resources { texture: &view, sampler });
+                move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
                     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                         label: None,
                         timestamp_writes: compute_writes(stamps, ALONE),
                     });
-                    let resources = Some(Resources { texture: &view, sampler });
-                    evaluator.record(&mut pass, &input, &output, records, resources);
-                })?;
-                if run > 0 {
-                    all[index].extend(time);
+                    evaluator.record(&mut pass, input, output, records, resources);
                 }
-            }
-        }
+            })
+            .collect();
+        let timed: Vec<Timed<'_>> = timed.iter().map(|record| ("filter", record as _)).collect();
+        let times = device.time_in_turn(&timed, 1, RUNS)?;
         println!("\n{place}\n\n| filter | ns a pixel | quartiles | ratio | to |");
         println!("|---|---|---|---|---|");
-        let nanos: Vec<[f64; 3]> = all.iter_mut().map(|times| quartiles(times, records)).collect();
+        let nanos: Vec<[f64; 3]> = times
+            .iter()
+            .map(|times| {
+                let [_, low, median, high] = gpu::quartiles(times);
+                [low, median, high].map(|seconds| seconds * 1e9 / records as f64)
+            })
+            .collect();
         for ((name, _, _, to), [low, median, high]) in VARIANTS.iter().zip(&nanos) {
             let base = VARIANTS.iter().position(|(name, ..)| name == to).unwrap_or(0);
             let ratio = median / nanos[base][1];
@@ -240,13 +245,4 @@ fn times(device: &Device) -> Result<(), GpuError> {
         }
     }
     Ok(())
-}
-
-/// Quartiles of the time of one pixel in ns.
-fn quartiles(times: &mut [Duration], pixels: usize) -> [f64; 3] {
-    times.sort();
-    [1, 2, 3].map(|quarter| {
-        let time = times.get(quarter * times.len() / 4).copied().unwrap_or_default();
-        time.as_secs_f64() * 1e9 / pixels as f64
-    })
 }

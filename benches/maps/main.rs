@@ -11,7 +11,7 @@ mod right;
 
 use std::time::Duration;
 
-use dpsm::gpu::{Device, GpuError, MeshBuffers, Parts, ShadowMaps};
+use dpsm::gpu::{self, Device, GpuError, MeshBuffers, Parts, ShadowMaps, Stamps, Timed};
 use dpsm::render::{Level, Method, Passes, Settings};
 use dpsm::scene;
 use place::Place;
@@ -88,27 +88,26 @@ pub fn time(
     variants: &[Variant],
     runs: usize,
 ) -> Result<Vec<Times>, GpuError> {
-    let mut times: Vec<Vec<Duration>> = vec![Vec::new(); variants.len()];
     for variant in variants {
         // fills the lists that are kept
         device.time(&variant.name, |encoder, stamps| variant.maps.record(encoder, mesh, stamps))?;
     }
-    for run in 0..=runs {
-        for (variant, times) in variants.iter().zip(&mut times) {
-            let time = device.time(&variant.name, |encoder, stamps| {
+    let records: Vec<_> = variants
+        .iter()
+        .map(|variant| {
+            move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
                 variant.maps.record_parts(encoder, mesh, stamps, variant.parts);
-            })?;
-            if run > 0 {
-                times.extend(time);
             }
-        }
-    }
-    let quartiles = |times: &mut Vec<Duration>| {
-        times.sort();
-        let at = |quarter: usize| times[(times.len() - 1) * quarter / 4].as_secs_f64() * 1e3;
-        Times { low: at(1), median: at(2), high: at(3) }
+        })
+        .collect();
+    let timed: Vec<Timed<'_>> =
+        variants.iter().zip(&records).map(|(v, record)| (v.name.as_str(), record as _)).collect();
+    let times = device.time_in_turn(&timed, 1, runs as u32)?;
+    let quartiles = |times: &Vec<Duration>| {
+        let [_, low, median, high] = gpu::quartiles(times).map(|seconds| seconds * 1e3);
+        Times { low, median, high }
     };
-    Ok(times.iter_mut().map(quartiles).collect())
+    Ok(times.iter().map(quartiles).collect())
 }
 
 /// Map size of the ratios: 1024 a hemisphere, as in the paper's time 512.

@@ -137,7 +137,7 @@ fn of_scene(device: &Device, place: &Place) -> Result<Vec<Score>, Failed> {
         let origin = light.as_dvec3();
         let seen = [&all, &kept].map(|kept| cost::seen(&place.scene, kept, origin));
         let pose = Pose { device, place, light, axis: own, camera, seen };
-        let mut score = pose.judge(&plan, &truth, target, number)?;
+        let mut score = pose.judge(&plan, target, number)?;
         score.milliseconds = milliseconds;
         println!(
             "  {} {number}: {light:.2} {target}: {} {} x {} {} {} {}: share {:.3}, cost {:.3}, timed {:.2?}",
@@ -167,7 +167,6 @@ impl Pose<'_> {
     fn judge(
         &self,
         plan: &Plan,
-        truth: &Truth,
         target: Target,
         number: usize,
     ) -> Result<Score, Failed> {
@@ -179,6 +178,8 @@ impl Pose<'_> {
             maps: plan.hemispheres as usize,
         };
         let frame = self.frame(&planned)?;
+        // what is left out changes the order of triangles
+        let truth = &truth_of(&frame);
         let empty = DepthMaps::empty(1, frame.light.hemispheres, Sampling::Nearest);
         let mut points = Bench::new(&frame, &empty, truth).points_from_camera(POINTS, 99);
         let eye = self.camera.eye.as_dvec3();

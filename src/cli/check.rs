@@ -5,7 +5,7 @@ use std::path::Path;
 use dpsm::reflect::Component;
 
 use super::table::Table;
-use super::{Arguments, CliError, Command, eval, measure, plan, probe, render, text};
+use super::{Arguments, CliError, Command, eval, measure, plan, probe, render, report, text};
 
 /// Everything that a command does before it opens an adapter.
 pub fn arguments(arguments: &Arguments) -> Result<(), CliError> {
@@ -25,6 +25,10 @@ pub fn arguments(arguments: &Arguments) -> Result<(), CliError> {
         }
         Some(Command::Measure(measure)) => measure::framed(&measure.setup).map(drop),
         Some(Command::Plan(arguments)) => plan::request(arguments).map(drop),
+        Some(Command::Report(report)) => match report::compared(report)? {
+            Some(_) => Ok(()),
+            None => report::subjects(report).map(drop),
+        },
     }
 }
 

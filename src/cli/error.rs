@@ -6,6 +6,7 @@ use dpsm::gpu::GpuError;
 use dpsm::link::LinkError;
 use dpsm::plan::PlanError;
 use dpsm::render::FrameError;
+use dpsm::report::ReportError;
 use dpsm::scene::SceneError;
 use dpsm::validate::ValidateError;
 
@@ -80,6 +81,17 @@ pub enum CliError {
         /// Why.
         source: image::ImageError,
     },
+}
+
+impl From<ReportError> for CliError {
+    fn from(error: ReportError) -> Self {
+        match error {
+            ReportError::Gpu(error) => error.into(),
+            ReportError::Frame(error) => error.into(),
+            ReportError::Scene(error) => error.into(),
+            ReportError::Picture(source) => Self::Encode { path: "a picture".into(), source },
+        }
+    }
 }
 
 impl CliError {

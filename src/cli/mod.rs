@@ -7,9 +7,11 @@ mod error;
 mod eval;
 mod measure;
 mod output;
+mod parts;
 mod plan;
 mod probe;
 mod render;
+mod report;
 mod search;
 mod setup;
 mod table;
@@ -25,8 +27,8 @@ use glam::Vec3;
 
 /// Point-light shadows from dual-paraboloid maps.
 ///
-/// With no command: renders the two scenes of Brabec, Annen and Seidel 2002 and prints where the
-/// pictures are, which adapter ran and how long each pass took.
+/// With no command: `dpsm report` on all built-in scenes, which says what every method costs and how
+/// wrong its shadows are.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
 pub struct Arguments {
@@ -39,8 +41,8 @@ pub struct Arguments {
     /// an adapter, 120 by default.
     #[arg(long, global = true, value_enum, default_value = "auto")]
     adapter: AdapterChoice,
-    /// Folder for the pictures when no command is given
-    #[arg(long, default_value = "dpsm-pictures")]
+    /// Folder for the report when no command is given
+    #[arg(long, default_value = report::FOLDER)]
     folder: PathBuf,
 }
 
@@ -54,7 +56,8 @@ Examples:
   dpsm eval dpsm_project --input points.csv
   dpsm measure brabec-room --walls 1 --size 512
   dpsm plan brabec-room --camera scene --error 0.2deg -o plan.json
-  dpsm render brabec-room --plan plan.json -o planned.png";
+  dpsm render brabec-room --plan plan.json -o planned.png
+  dpsm report atrium.obj --light 0,4,0";
 
 /// Which implementation computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -79,13 +82,14 @@ enum Command {
     Probe(probe::ProbeArguments),
     Measure(measure::MeasureArguments),
     Plan(plan::PlanArguments),
+    Report(report::ReportArguments),
 }
 
 /// Runs the command.
 pub fn run(arguments: Arguments) -> Result<(), CliError> {
     let adapter = arguments.adapter;
     match arguments.command {
-        None => render::main_job(adapter, &arguments.folder),
+        None => report::report(adapter, &report::ReportArguments::all(&arguments.folder)),
         Some(Command::Render(render)) => render::render(adapter, &render),
         Some(Command::Modules) => text::modules(),
         Some(Command::Link(link)) => text::link(&link),
@@ -95,6 +99,7 @@ pub fn run(arguments: Arguments) -> Result<(), CliError> {
         Some(Command::Probe(probe)) => probe::probe(adapter, &probe),
         Some(Command::Measure(measure)) => measure::measure(adapter, &measure),
         Some(Command::Plan(plan)) => plan::plan(&plan),
+        Some(Command::Report(report)) => report::report(adapter, &report),
     }
 }
 

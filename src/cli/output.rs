@@ -39,16 +39,8 @@ impl Outputs {
 
     /// Adds a picture as PNG.
     pub fn add_picture(&mut self, path: &Path, picture: &Picture) -> Result<(), CliError> {
-        use image::ImageEncoder;
-        let mut bytes = Vec::new();
-        image::codecs::png::PngEncoder::new(&mut bytes)
-            .write_image(
-                picture.bytes(),
-                picture.width,
-                picture.height,
-                image::ExtendedColorType::Rgba8,
-            )
-            .map_err(|source| CliError::Encode { path: path.into(), source })?;
+        let encoded = picture.png();
+        let bytes = encoded.map_err(|source| CliError::Encode { path: path.into(), source })?;
         self.add(path, bytes)
     }
 

@@ -5,11 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dpsm::gpu::Device;
-use dpsm::render::{Frame, Lookup, Picture, Rendering, Settings};
-use dpsm::scalar::depth::dpsm_depth;
-use dpsm::scalar::maps::DepthMaps;
-use dpsm::scene::{self, Options};
-use glam::Vec3;
+use dpsm::render::{Frame, Lookup, Rendering};
+use dpsm::scene;
 
 use super::output::{Outputs, print};
 use super::setup::{self, SetupArguments};
@@ -60,33 +57,11 @@ enum LookupName {
     Vertex,
 }
 
+/// Parses `960x720`.
 pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let number = |text: &str| text.parse().map_err(|_| format!("`{text}` is not a whole number"));
     let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 960x720")?;
     Ok([number(width)?, number(height)?])
-}
-
-/// `dpsm` with no command: the two scenes of Brabec, Annen and Seidel 2002.
-pub fn main_job(adapter: AdapterChoice, folder: &Path) -> Result<(), CliError> {
-    let device = adapter.open()?;
-    let mut outputs = Outputs::for_option("--folder");
-    let mut report = format!("{}\n", describe(device.as_ref()));
-    for name in ["brabec-room", "brabec-ceiling"] {
-        let scene = scene::open(name, &Options::default())?;
-        let light = scene.default_light();
-        let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
-        // 512 x 512 maps and picture, as in the paper's section 5
-        let settings =
-            Settings { size: 512, image: [512, 512], views: true, ..Settings::default() };
-        let axis = light.axis.unwrap_or(Vec3::NEG_Y);
-        let hemispherical = light.axis.is_some();
-        let frame = Frame::new(&scene, light.position, axis, hemispherical, &camera, settings)?;
-        let output = folder.join(format!("{name}.png"));
-        report.push_str(&picture(device.as_ref(), name, &frame, &output, &mut outputs)?);
-    }
-    let unwritable = |source| CliError::Write { path: folder.into(), source, remedy: "--folder" };
-    std::fs::create_dir_all(folder).map_err(unwritable)?;
-    finish(report, outputs)
 }
 
 /// The scene's name and frame, checked before anything is opened or rendered.
@@ -153,22 +128,11 @@ fn companions(
     };
     if let Some(maps) = &rendering.maps {
         for (layer, name) in (0..maps.layers).zip(names) {
-            outputs.add_picture(&beside(&format!("{name}-map")), &grey(frame, maps, layer))?;
+            outputs.add_picture(&beside(&format!("{name}-map")), &frame.grey(maps, layer))?;
         }
     }
     for (view, name) in rendering.views.iter().zip(names) {
         outputs.add_picture(&beside(&format!("{name}-view")), view)?;
     }
     Ok(())
-}
-
-/// A map as a grey picture: black at the near sphere, white at the far one or where it is empty.
-fn grey(frame: &Frame, maps: &DepthMaps, layer: u32) -> Picture {
-    let (near, far) = (frame.light.near, frame.light.far);
-    let shade = |distance: f32| {
-        let value = (dpsm_depth(distance, near, far) * 255.0).round() as u8;
-        [value, value, value, 255]
-    };
-    let pixels = frame.distances(maps, layer).map(shade).collect();
-    Picture { width: maps.size, height: maps.size, pixels }
 }

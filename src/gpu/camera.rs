@@ -1,11 +1,12 @@
 //! The camera pass, the hemisphere views, and the whole rendering of a frame.
 
+use super::lookup::{camera_shader, camera_uniform, constants};
 use super::maps::ShadowMaps;
 use super::mesh::MeshBuffers;
-use super::passes::{depth_attachment, depth_state, light_words, shader, uniform_buffer};
+use super::passes::{depth_attachment, depth_state, light_words};
 use super::timer::{ALONE, render_writes};
 use super::{Device, GpuError};
-use crate::render::{AMBIENT, Bias, Frame, Lookup, Picture, Projection, Rendering, SPECULAR};
+use crate::render::{Frame, Lookup, Picture, Projection, Rendering};
 use crate::scalar::maps::{DepthMaps, Sampling};
 
 /// Format of the pictures: the attachment encodes sRGB.
@@ -93,6 +94,7 @@ struct Pass<'a> {
 struct Camera<'a> {
     module: wgpu::ShaderModule,
     uniform: wgpu::Buffer,
+    constants: [(&'static str, f64); 2],
     sampler: wgpu::Sampler,
     lights: wgpu::Buffer,
     maps: &'a ShadowMaps,
@@ -100,47 +102,14 @@ struct Camera<'a> {
 
 impl<'a> Camera<'a> {
     fn new(device: &Device, frame: &Frame, maps: &'a ShadowMaps) -> Result<Self, GpuError> {
-        let module = shader(
-            device,
-            "camera.wesl",
-            concat!(
-                include_str!("camera.wesl"),
-                include_str!("shadow.wesl"),
-                include_str!("position.wesl"),
-                include_str!("mask.wesl")
-            ),
-        )?;
-        let view = &frame.view;
-        let rows = [
-            (view.eye, view.near),
-            (view.right, view.scale[0]),
-            (view.up, view.scale[1]),
-            (view.forward, AMBIENT),
-            (frame.color, SPECULAR),
-        ];
-        let row = |(v, last): (glam::Vec3, f32)| [v.x, v.y, v.z, last].map(f32::to_bits);
-        let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
-        words.extend(light_words(&maps.lights[0]));
-        let settings = &frame.settings;
-        let (kind, cosine) = match settings.bias_taken() {
-            Bias::Constant(_) => (0, 0.0),
-            Bias::Footprint => (1, 0.0),
-            Bias::TexelCentre => (2, 0.0),
-            Bias::WithoutNormal(cosine) => (3, cosine),
-            Bias::TexelCentreOrOwn => (4, 0.0),
-        };
-        let [_, tolerance] = settings.tolerances();
-        let quantum = settings.format.quantum();
-        let biases = [frame.bias, quantum, tolerance, settings.window(), cosine];
-        words.extend(biases.map(f32::to_bits));
-        words.extend([kind, 0, 0]);
-        words.extend(frame.filter_words());
-        let uniform = uniform_buffer(device, &words)?;
+        let module = camera_shader(device)?;
+        let uniform = camera_uniform(device, frame, &maps.lights[0])?;
+        let constants = constants(frame);
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
         let all: Vec<u32> = maps.lights.iter().flat_map(light_words).collect();
         let bytes = bytemuck::cast_slice(&all);
         let lights = device.upload("light bytes", bytes, wgpu::BufferUsages::STORAGE)?;
-        Ok(Self { module, uniform, sampler, lights, maps })
+        Ok(Self { module, uniform, constants, sampler, lights, maps })
     }
 
     /// Draws all triangles with one pair of entry points and reads the picture back.
@@ -205,13 +174,15 @@ impl<'a> Camera<'a> {
         [vertex, fragment]: [&str; 2],
         compare: wgpu::CompareFunction,
     ) -> wgpu::RenderPipeline {
+        let compilation_options =
+            wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() };
         device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(vertex),
             layout: None,
             vertex: wgpu::VertexState {
                 module: &self.module,
                 entry_point: Some(vertex),
-                compilation_options: Default::default(),
+                compilation_options: compilation_options.clone(),
                 buffers: &[],
             },
             primitive: Default::default(),
@@ -220,7 +191,7 @@ impl<'a> Camera<'a> {
             fragment: Some(wgpu::FragmentState {
                 module: &self.module,
                 entry_point: Some(fragment),
-                compilation_options: Default::default(),
+                compilation_options,
                 targets: &[Some(COLOR.into())],
             }),
             multiview_mask: None,

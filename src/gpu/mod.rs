@@ -3,6 +3,7 @@
 mod camera;
 mod evaluate;
 mod lists;
+mod lookup;
 mod maps;
 mod mesh;
 mod multiview;
@@ -14,10 +15,11 @@ mod timer;
 
 pub use camera::{comparison_sampler, make_maps, render};
 pub use evaluate::{Evaluation, Evaluator, Resources, entry_point};
+pub use lookup::{PointTest, PointTests};
 pub use maps::{Parts, ShadowMaps};
 pub use mesh::MeshBuffers;
 pub use texels::Texels;
-pub use timer::{ALONE, Ends, Stamps, compute_writes, render_writes};
+pub use timer::{ALONE, Ends, Stamps, Timed, compute_writes, quartiles, render_writes};
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Times passes: timestamps at the pass's boundaries where the adapter has them, else the clock
-//! around a submission that is waited for.
+//! Times passes: timestamps at the pass's boundaries where the adapter has them and can be trusted
+//! with them, else the clock around a submission that is waited for.
 
 use std::time::{Duration, Instant};
 
@@ -47,15 +47,19 @@ pub fn compute_writes(
 }
 
 impl Device {
-    /// Runs one pass alone and gives its time; negative timestamp deltas give `None`.
+    /// Runs passes alone and gives their time, from the first one's timestamp to the last one's;
+    /// negative deltas give `None`. By the clock around the submission where there are no
+    /// timestamps, and on software adapters: llvmpipe does a compute pass at once, but stamps it
+    /// when it next draws, and so leaves out the sorting of triangles.
     pub fn time(
         &self,
         name: &str,
         record: impl Fn(&mut wgpu::CommandEncoder, Stamps<'_>),
     ) -> Result<Option<Duration>, GpuError> {
-        if !self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
-            let start = Instant::now();
+        let stamps = self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
+        if !stamps || self.info.device_type == wgpu::DeviceType::Cpu {
             let encoder = self.encode(name, |encoder| record(encoder, None))?;
+            let start = Instant::now();
             self.submit(name, encoder)?;
             return Ok(Some(start.elapsed()));
         }
@@ -106,4 +110,40 @@ impl Device {
             encoder
         })
     }
+}
+
+/// What is timed in turn: a name and what to record.
+pub type Timed<'a> = (&'a str, &'a dyn Fn(&mut wgpu::CommandEncoder, Stamps<'_>));
+
+impl Device {
+    /// Times of each variant, `runs` of them after `warm_up` that are thrown away, as the first one
+    /// compiles; the variants take turns, so that all meet the same load.
+    pub fn time_in_turn(
+        &self,
+        variants: &[Timed<'_>],
+        warm_up: u32,
+        runs: u32,
+    ) -> Result<Vec<Vec<Duration>>, GpuError> {
+        let mut times = vec![Vec::new(); variants.len()];
+        for run in 0..warm_up + runs {
+            for ((name, record), times) in variants.iter().zip(&mut times) {
+                let time = self.time(name, record)?;
+                if run >= warm_up {
+                    times.extend(time);
+                }
+            }
+        }
+        Ok(times)
+    }
+}
+
+/// Least, lower quartile, median and upper quartile in seconds; 0 of none.
+pub fn quartiles(times: &[Duration]) -> [f64; 4] {
+    let mut times = times.to_vec();
+    times.sort();
+    let at = |quarter: usize| {
+        let place = times.len().saturating_sub(1) * quarter / 4;
+        times.get(place).map_or(0.0, Duration::as_secs_f64)
+    };
+    [0, 1, 2, 3].map(at)
 }

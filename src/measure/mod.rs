@@ -14,7 +14,7 @@ pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straig
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
-pub use shadow::{Judgement, ShadowError, judge, shadow_error};
+pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
 
 use fastrand::Rng;
 use glam::{DMat3, DVec3};
@@ -216,6 +216,23 @@ impl<'a> Bench<'a> {
         let hits = self.truth.first_hits(&rays).into_iter().flatten();
         let point = |hit: Hit| Some(self.on_triangle(hit.triangle, self.truth.point(&hit)?));
         hits.filter_map(point).collect()
+    }
+
+    /// What the camera sees through the middle of each pixel, row by row from the top.
+    pub fn points_of_image(&self) -> Vec<Option<Point>> {
+        let view = &self.frame.view;
+        let [eye, right, up, forward] =
+            [view.eye, view.right, view.up, view.forward].map(|v| v.as_dvec3());
+        let [width, height] = self.frame.settings.image;
+        let middle = |at: u32, of: u32| (2.0 * f64::from(at) + 1.0) / f64::from(of) - 1.0;
+        let ray = |pixel: u32| {
+            let x = middle(pixel % width, width) / f64::from(view.scale[0]);
+            let y = -middle(pixel / width, height) / f64::from(view.scale[1]);
+            Ray::new(eye, right * x + up * y + forward)
+        };
+        let rays: Vec<Ray> = (0..width * height).map(ray).collect();
+        let point = |hit: Hit| Some(self.on_triangle(hit.triangle, self.truth.point(&hit)?));
+        self.truth.first_hits(&rays).into_iter().map(|hit| hit.and_then(point)).collect()
     }
 
     /// `count` points scattered evenly over the area of all triangles, less those in a hole.

@@ -74,7 +74,7 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
         own,
         inside: (near..=far).contains(&own),
         lit: occluder.is_none() && !unmapped,
-        edge: !unmapped && is_edge(bench, point, [x, y], at.hemisphere),
+        edge: edge_point(bench, point),
         gap: occluder.map_or(f64::INFINITY, |hit| own - hit.distance),
     }
 }
@@ -84,8 +84,16 @@ fn texel_place(bench: &Bench<'_>, [x, y]: [f64; 2]) -> Vec2<f64> {
     dpsm_texture_to_disk(Vec2::new(x, y) / bench.light.size, bench.light.guard)
 }
 
-/// True where the rays over the texels that a lookup reads do not all agree, or miss the plane.
-fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) -> bool {
+/// True of an edge point: the rays over the texels that its lookup reads do not all agree, or miss
+/// the point's plane.
+pub fn edge_point(bench: &Bench<'_>, point: &Point) -> bool {
+    let p = bench.to_light(point.world).narrow();
+    let at = bench.projection.lookup(p, bench.frame.light);
+    if !at.mapped {
+        return false;
+    }
+    let texel = |c: f32| (f64::from(c) * f64::from(bench.maps.size)).floor();
+    let [x, y] = [at.coordinates.x, at.coordinates.y].map(texel);
     let own = match bench.maps.sampling {
         Sampling::Nearest => 0.0,
         Sampling::Linear => 1.0,
@@ -97,7 +105,7 @@ fn is_edge(bench: &Bench<'_>, point: &Point, [x, y]: [f64; 2], hemisphere: u32) 
         let offset = |k: i32| f64::from(k) / steps - reach;
         let corner = [x + offset(i % FOOTPRINT_RAYS), y + offset(i / FOOTPRINT_RAYS)];
         let uv = texel_place(bench, corner);
-        bench.reaches(point, uv, hemisphere).is_none_or(|reaches| reaches != sees)
+        bench.reaches(point, uv, at.hemisphere).is_none_or(|reaches| reaches != sees)
     })
 }
 

@@ -48,17 +48,15 @@ impl Frame {
         [radius.unwrap_or(far * LIGHT_SHARE), nearest.unwrap_or(far * NEAREST_SHARE)]
     }
 
-    /// What the camera pass is told of the filter: kind, taps' number and kind, whether the kernel
-    /// is a world radius; kernel, light's radius, nearest casters, naive kernel's own bias or -1.
-    pub fn filter_words(&self) -> [u32; 8] {
+    /// What the camera pass is told of the filter: taps' number and kind, whether the kernel is a
+    /// world radius; kernel, light's radius, nearest casters, naive kernel's own bias or -1.
+    pub fn filter_words(&self) -> [u32; 7] {
         let taps = self.taps();
-        let (kind, kernel) = match self.settings.filter {
-            Filter::Single => (0, None),
-            Filter::Naive(_) => (1, None),
-            Filter::Disk(taps) => (2, Some(taps.kernel)),
-            Filter::Mirror(taps) => (3, Some(taps.kernel)),
-            Filter::Reproject(taps) => (4, Some(taps.kernel)),
-            Filter::Soft { .. } => (5, None),
+        let kernel = match self.settings.filter {
+            Filter::Disk(taps) | Filter::Mirror(taps) | Filter::Reproject(taps) => {
+                Some(taps.kernel)
+            }
+            Filter::Single | Filter::Naive(_) | Filter::Soft { .. } => None,
         };
         let (world, size) = match kernel {
             Some(Kernel::Radius(radius)) => (1, radius),
@@ -68,7 +66,7 @@ impl Frame {
         let [radius, nearest] = self.soft();
         let bias = self.constant_bias().unwrap_or(-1.0);
         let [size, radius, nearest, bias] = [size, radius, nearest, bias].map(f32::to_bits);
-        [kind, taps.count, taps.kind, world, size, radius, nearest, bias]
+        [taps.count, taps.kind, world, size, radius, nearest, bias]
     }
 
     /// The filtered share of the light, by any filter but a single lookup.

@@ -48,7 +48,7 @@ pub struct Machine {
 }
 
 /// How times were taken.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// Runs of each variant that are thrown away.
     pub warm_up: u32,
