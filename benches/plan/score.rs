@@ -164,12 +164,7 @@ fn kept(plan: &Plan, place: &Place) -> Vec<bool> {
 }
 
 impl Pose<'_> {
-    fn judge(
-        &self,
-        plan: &Plan,
-        target: Target,
-        number: usize,
-    ) -> Result<Score, Failed> {
+    fn judge(&self, plan: &Plan, target: Target, number: usize) -> Result<Score, Failed> {
         let base = Settings::default();
         let planned = Setting {
             name: "plan".into(),

@@ -29,24 +29,24 @@ pub struct Rates {
 impl Rates {
     /// llvmpipe's on two cores (docs/plan.md says how they were measured).
     pub const LLVMPIPE: Self = Self {
-        pass: 0.462,
-        sort: 1.74e-5,
-        triangle: 0.0,
-        outline: 3.45e-5,
-        inside: 1.97e-6,
-        texel: 0.0,
+        pass: 0.48,
+        sort: 1.3e-4,
+        triangle: 7.8e-6,
+        outline: 3.1e-5,
+        inside: 1.3e-6,
+        texel: 1.0e-6,
         hard: 6.8e-6,
         hardware: 8.0e-6,
     };
 
     /// The same where triangles are drawn with straight edges (`vertex`, `fragment-depth`).
     pub const LLVMPIPE_STRAIGHT: Self = Self {
-        pass: 0.129,
-        sort: 3.62e-5,
-        triangle: 4.10e-5,
-        outline: 6.49e-6,
-        inside: 1.62e-6,
-        texel: 1.12e-7,
+        pass: 0.072,
+        sort: 3.7e-5,
+        triangle: 5.2e-5,
+        outline: 9.9e-6,
+        inside: 1.1e-6,
+        texel: 6.8e-7,
         ..Self::LLVMPIPE
     };
 }

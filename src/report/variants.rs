@@ -58,7 +58,13 @@ pub fn planned(subject: &Subject, effort: &Effort) -> Result<Planned, PlanError>
     let maps = if plan.is_hemispherical() { "1 map" } else { "2 maps" };
     let name = format!("plan: {}, {maps}", choice.name);
     let around = Some((Vec3::from_array(plan.axis), plan.is_hemispherical()));
-    let lines = plan.explanation().lines().map(String::from).collect();
+    let lines = plan.choices.iter().map(|choice| {
+        let error = choice
+            .error
+            .map_or(String::new(), |error| format!(", error {}", plan.error.with(error).short()));
+        format!("{}: {}{error}: {}", choice.what, choice.value, choice.why)
+    });
+    let lines = lines.collect();
     Ok(Planned { choice: Choice { name, role: Role::Plan, around, ..choice }, lines })
 }
 

@@ -186,8 +186,8 @@ fn plan(lines: &[String]) -> String {
     if lines.is_empty() {
         return String::new();
     }
-    let lines: Vec<String> = lines.iter().map(|line| escape(line)).collect();
-    format!("<h3>What the plan chooses, and why</h3>\n<pre>{}</pre>\n", lines.join("\n"))
+    let lines = lines.iter().map(|line| format!("<li>{}</li>\n", escape(line)));
+    format!("<h3>What the plan chooses, and why</h3>\n<ul>{}</ul>\n", lines.collect::<String>())
 }
 
 fn sources(sources: &[Source], id: &str) -> String {
