@@ -11,12 +11,16 @@ use crate::scalar::float::{self as scalar, Vec2};
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::Sampling;
 
-/// How far from the true edge a point that is lit wrongly may be, in texels, but for one in a
-/// thousand of them: half a texel's diagonal, 0.707, bounds them all. Of 2 x 2 texels compared
-/// together, those on the wrong side of a straight edge outweigh the others only within half a
-/// texel of it, and but for one in a thousand within less (docs/plan.md).
+/// How far from the true edge a point that is lit wrongly may be, in texels (docs/plan.md): by its
+/// texel's centre half a diagonal, 0.707, at most, and but for one in a thousand of them this; of
+/// 2 x 2 texels compared together, those on the wrong side of a straight edge outweigh the others
+/// only within half a texel of it.
 const HARD_REACH: f64 = 0.603;
-const HARDWARE_REACH: f64 = 0.449;
+const HARDWARE_REACH: f64 = 0.5;
+
+/// Windows of the footprint's bias that must fit a gap: two by its derivation, and as much again
+/// for the gaps thinner than those that the samples meet.
+const WINDOWS: f64 = 4.0;
 
 /// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
 /// a gap to be forgiven.
@@ -86,7 +90,7 @@ pub struct Case<'a> {
     pub rates: &'a Rates,
 }
 
-/// How many texels a lookup may be off, but for one wrong point in a thousand.
+/// How many texels a lookup may be off: by the hard test but for one wrong point in a thousand.
 pub fn reach(sampling: Sampling) -> f64 {
     match sampling {
         Sampling::Nearest => HARD_REACH,
@@ -198,7 +202,7 @@ impl Case<'_> {
             let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range + lean;
             let window = match sampling {
                 Sampling::Nearest => 0.0,
-                Sampling::Linear => 2.0 * range * footprint(sample, cosine, &light),
+                Sampling::Linear => WINDOWS * range * footprint(sample, cosine, &light),
             };
             let left = gap - slack - window;
             if left <= 0.0 {

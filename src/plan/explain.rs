@@ -93,8 +93,11 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup is off by up to {reach} texel but for 1 in 1000 that are; the shadow edges \
-                 that show ask for {:.0}",
+                "a lookup is off by up to {reach} texel{}; the shadow edges that show ask for {:.0}",
+                match best.sampling {
+                    Sampling::Nearest => ", but for 1 in 1000 that are",
+                    Sampling::Linear => "",
+                },
                 case.edge_size(axis, best.sampling)
             ),
             Some(error(edges)),
