@@ -167,7 +167,7 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
     let points = bench.points_from_camera(effort.points, effort.seed);
     let receivers: Vec<_> = seen.iter().flatten().map(|p| bench.receiver(p).into()).collect();
 
-    let choices = variants::choices(subject, effort, job.device.is_none());
+    let choices = variants::choices(subject, effort, job.device.is_none())?;
     let timed = match job.device {
         Some(device) => timing::by_adapter(device, job, subject, &choices, &receivers)?,
         None => timing::by_ports(job, subject, &choices, &receivers)?,
