@@ -184,7 +184,7 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
         Err(PlanError::Frame(error)) => return Err(error.into()),
         Err(_) => None,
     };
-    let choices = variants::choices(subject, effort, job.device.is_none(), planned.as_ref());
+    let choices = variants::choices(subject, effort, job.device.is_none(), planned.as_ref())?;
     let timed = match job.device {
         Some(device) => timing::by_adapter(device, job, subject, &choices, &receivers)?,
         None => timing::by_ports(job, subject, &choices, &receivers)?,

@@ -30,8 +30,9 @@ pub struct Planned {
     pub lines: Vec<String>,
 }
 
-/// Triangles are cut into as many a side at the most, as finer ones take seconds.
+/// Triangles are cut into as many a side at the most, and into as many in all, as more take seconds.
 const LEVEL: u32 = 16;
+const MOST_TRIANGLES: u64 = 1_000_000;
 
 /// Half-angle of the disk's cone in degrees, and its taps, as `dpsm render` has them.
 const CONE_DEGREES: f32 = 1.0;
@@ -95,7 +96,7 @@ pub fn choices(
     effort: &Effort,
     ports: bool,
     planned: Option<&Planned>,
-) -> Vec<Choice> {
+) -> Result<Vec<Choice>, FrameError> {
     let sizes = [effort.size / 4, effort.size / 2, effort.size];
     let [_, middle, large] = sizes;
     let mut wanted = Vec::new();
@@ -118,9 +119,30 @@ pub fn choices(
     wanted.extend(all.iter().map(|&size| of(effort, Method::Cube, size)));
     let some: &[u32] = if ports { &[middle] } else { &[middle, large] };
     wanted.extend(some.iter().map(|&size| of(effort, Method::Cube, 2 * face(size).max(1))));
+    for settings in wanted.iter_mut().filter(|s| s.method == Method::Tessellated) {
+        let halves = std::iter::successors(Some(LEVEL), |level| Some(level / 2));
+        for most in halves.take_while(|level| *level > 0) {
+            settings.level = Level::Mesh(most);
+            if drawn(&subject.frame(settings)?)? <= MOST_TRIANGLES {
+                break;
+            }
+        }
+    }
     let mut choices: Vec<Choice> = wanted.iter().map(Choice::of).collect();
     choices.extend(planned.map(|planned| planned.choice.clone()));
-    choices
+    Ok(choices)
+}
+
+/// Triangles that a frame's method draws, after subdivision.
+fn drawn(frame: &Frame) -> Result<u64, FrameError> {
+    if frame.settings.method != Method::Tessellated {
+        return Ok(frame.drawn().iter().map(|(range, _)| range.len() as u64).sum());
+    }
+    let extents = frame.extents();
+    let levels = frame.levels(&extents, &frame.light)?;
+    let cut = |level: u32| u64::from(level) * u64::from(level);
+    let of_mesh = extents.iter().zip(levels);
+    Ok(of_mesh.map(|(mesh, level)| mesh.triangles.len() as u64 * cut(level)).sum())
 }
 
 impl Choice {
@@ -151,16 +173,6 @@ pub fn described(choice: &Choice, frame: &Frame) -> Result<Variant, FrameError> 
     let Settings { method, format, .. } = choice.settings;
     let (size, maps) = (choice.settings.map_size(), frame.light.hemispheres);
     let texels = u64::from(size) * u64::from(size) * u64::from(maps);
-    let triangles = match method {
-        Method::Tessellated => {
-            let extents = frame.extents();
-            let levels = frame.levels(&extents, &frame.light)?;
-            let cut = |level: u32| u64::from(level) * u64::from(level);
-            let of_mesh = extents.iter().zip(levels);
-            of_mesh.map(|(mesh, level)| mesh.triangles.len() as u64 * cut(level)).sum()
-        }
-        _ => frame.drawn().iter().map(|(range, _)| range.len() as u64).sum(),
-    };
     let bytes = match format {
         Format::D16 => 2,
         Format::D24 | Format::D32 => 4,
@@ -183,7 +195,7 @@ pub fn described(choice: &Choice, frame: &Frame) -> Result<Variant, FrameError> 
         format: format_name(format).into(),
         texels,
         bytes: texels * bytes,
-        triangles,
+        triangles: drawn(frame)?,
         role: choice.role,
         ..Variant::default()
     })
