@@ -12,11 +12,10 @@ use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::Sampling;
 
 /// How far from the true edge a point that is lit wrongly may be, in texels (docs/plan.md): by its
-/// texel's centre half a diagonal, 0.707, at most, and but for one in a thousand of them this; of
-/// 2 x 2 texels compared together, those on the wrong side of a straight edge outweigh the others
-/// only within half a texel of it.
+/// texel's centre half a diagonal, 0.707, at most, and but for one in a thousand of them this; by
+/// 2 x 2 texels half a texel at most, and but for one in ten thousand this.
 const HARD_REACH: f64 = 0.603;
-const HARDWARE_REACH: f64 = 0.5;
+const HARDWARE_REACH: f64 = 0.477;
 
 /// Windows of the footprint's bias that must fit a gap: two by its derivation, and as much again
 /// for the gaps thinner than those that the samples meet.
@@ -90,7 +89,7 @@ pub struct Case<'a> {
     pub rates: &'a Rates,
 }
 
-/// How many texels a lookup may be off: by the hard test but for one wrong point in a thousand.
+/// How many texels a lookup may be off, but for few wrong points.
 pub fn reach(sampling: Sampling) -> f64 {
     match sampling {
         Sampling::Nearest => HARD_REACH,

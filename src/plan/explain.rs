@@ -96,7 +96,7 @@ pub fn explained(
                 "a lookup is off by up to {reach} texel{}; the shadow edges that show ask for {:.0}",
                 match best.sampling {
                     Sampling::Nearest => ", but for 1 in 1000 that are",
-                    Sampling::Linear => "",
+                    Sampling::Linear => ", but for 1 in 10,000 that are",
                 },
                 case.edge_size(axis, best.sampling)
             ),

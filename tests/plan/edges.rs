@@ -47,24 +47,19 @@ fn wrong(sampling: Sampling) -> Vec<f64> {
 }
 
 #[test]
-fn one_wrong_point_in_a_thousand_is_beyond_the_hard_tests_reach() {
-    let (wrong, reach) = (wrong(Sampling::Nearest), reach(Sampling::Nearest));
-    let beyond = wrong.iter().filter(|by| **by > reach).count() as f64;
-    let share = beyond / wrong.len() as f64;
-    println!("{} wrong, {share:.2e} beyond {reach}", wrong.len());
-    // a count of k is off by its root, taken four times; the reach has three digits, whose half a
-    // thousandth changes the share by 2.3% of it
-    assert!((share / 1e-3 - 1.0).abs() < 4.0 / beyond.sqrt() + 0.023, "{share:.3e}");
-    assert!(wrong.iter().all(|by| *by <= 0.5_f64.sqrt()));
-}
-
-#[test]
-fn the_reach_of_two_by_two_texels_bounds_all_wrong_points_and_is_reached() {
-    let (wrong, reach) = (wrong(Sampling::Linear), reach(Sampling::Linear));
-    let largest = wrong.iter().copied().fold(0.0, f64::max);
-    println!("{} wrong, the largest by {largest}", wrong.len());
-    // wrong points thin out towards the bound: of so many the largest is within a hundredth
-    assert!(largest <= reach && largest > reach - 0.01, "{largest}");
+fn few_wrong_points_are_beyond_the_reach_and_none_beyond_the_bound() {
+    let bound = 0.5_f64.sqrt();
+    for (sampling, bound, few) in [(Sampling::Nearest, bound, 1e-3), (Sampling::Linear, 0.5, 1e-4)]
+    {
+        let (wrong, reach) = (wrong(sampling), reach(sampling));
+        let beyond = wrong.iter().filter(|by| **by > reach).count() as f64;
+        let share = beyond / wrong.len() as f64;
+        println!("{sampling:?}: {} wrong, {share:.2e} beyond {reach}", wrong.len());
+        // a count of k is off by its root, taken four times; the reach has three digits, whose half
+        // a thousandth changes the share by at most 8% of it
+        assert!((share / few - 1.0).abs() < 4.0 / beyond.sqrt() + 0.08, "{share:.3e}");
+        assert!(wrong.iter().all(|by| *by <= bound));
+    }
 }
 
 /// A sample that needs an angle in a direction.
