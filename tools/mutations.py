@@ -1208,7 +1208,7 @@ FEATURES = {
     "opinions": [], "judge": [], "parameterisations": [], "report": [], "report_page": [],
     "report_run": [], "point_tests": [],
     "measure": SCENE, "frame": SCENE, "scene": SCENE, "truth": SCENE,
-    "map_error": SCENE, "bias_scenes": SCENE, "cube_maps": SCENE, "plan": [],
+    "map_error": SCENE, "bias_scenes": SCENE, "cube_maps": SCENE, "plan": SCENE,
 }
 
 
