@@ -50,10 +50,7 @@ impl Judge<'_> {
         let mut sum = vec![Load::default(); maps as usize];
         for seen in self.seen {
             for (sum, load) in sum.iter_mut().zip(loads(seen, axis)) {
-                let share = 1.0 / self.seen.len() as f64;
-                sum.triangles += load.triangles * share;
-                sum.outline += load.outline * share;
-                sum.inside += load.inside * share;
+                sum.add(&load, 1.0 / self.seen.len() as f64);
             }
         }
         let straddling = self.seen.iter().flatten().filter(|t| t.straddles(axis)).count();

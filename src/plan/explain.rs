@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::axis::Axis;
 use super::casters::Reason;
 use super::choose::{Candidate, Case, reach};
-use super::{LeftOut, Plan, Request, VERSION};
+use super::straight::BOW;
+use super::{Named, Plan, Request, VERSION};
 use crate::render::{Format, Method, Settings};
 use crate::scalar::maps::Sampling;
 
@@ -50,7 +51,12 @@ pub fn explained(
     let left_out_meshes = left_out.iter().zip(&request.scene.meshes).enumerate();
     let left_out_meshes = left_out_meshes
         .filter(|(_, (reason, _))| reason.is_some())
-        .map(|(mesh, (_, of))| LeftOut { mesh, name: of.name.clone() });
+        .map(|(mesh, (_, of))| Named { mesh, name: of.name.clone() });
+    let by_vertex = match best.straight {
+        true => case.by_vertex(best.axis, best.size),
+        false => Vec::new(),
+    };
+    let named = |mesh: usize| Named { mesh, name: request.scene.meshes[mesh].name.clone() };
     let error = |share: f64| request.error.value() * share;
     let mut plan = Plan {
         version: VERSION,
@@ -70,6 +76,7 @@ pub fn explained(
         near: case.spheres[0],
         far: case.spheres[1],
         left_out: left_out_meshes.collect(),
+        by_vertex: by_vertex.into_iter().map(named).collect(),
         meets: best.share <= 1.0,
         predicted: request.error.with(error(best.share)),
         milliseconds: [best.generation, best.lookup],
@@ -82,8 +89,9 @@ pub fn explained(
         why,
         error,
     };
-    let edges = case.edge_size(axis, best.sampling) / f64::from(best.size);
-    let reach = reach(best.sampling);
+    let reach = reach(best.straight);
+    let edge_size = case.edge_size(axis, reach);
+    let edges = edge_size / f64::from(best.size);
     plan.choices = vec![
         hemispheres(request, axes, candidates, best),
         seam(axes, candidates, best),
@@ -93,17 +101,19 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup is off by up to {reach} texel{}; the shadow edges that show ask for {:.0}",
-                match best.sampling {
-                    Sampling::Nearest => ", but for 1 in 1000 that are",
-                    Sampling::Linear => ", but for 1 in 10,000 that are",
-                },
-                case.edge_size(axis, best.sampling)
+                "a lookup is off by up to {reach} texel, but for 1 in 10,000 that are; the shadow \
+                 edges that show ask for {:.0}",
+                edge_size
             ),
             Some(error(edges)),
         ),
         format_line(case, candidates, best),
-        method_line(best, error(edges * f64::from(Settings::default().tau) / reach)),
+        method_line(
+            &plan,
+            candidates,
+            best,
+            error(edges * f64::from(Settings::default().tau) / reach),
+        ),
         filter_line(candidates, best),
         line(
             "whole",
@@ -231,8 +241,8 @@ fn format_line(case: &Case<'_>, candidates: &[Candidate], best: &Candidate) -> C
     Choice { what: "format".into(), value: names(best)[0].into(), why, error: None }
 }
 
-fn method_line(best: &Candidate, error: f64) -> Choice {
-    let (why, error) = match best.method {
+fn method_line(plan: &Plan, candidates: &[Candidate], best: &Candidate, error: f64) -> Choice {
+    let (mut why, error) = match best.method {
         Method::Exact => ("the gaps that must hold leave nothing for flat triangles".into(), None),
         _ => (
             format!(
@@ -244,7 +254,19 @@ fn method_line(best: &Candidate, error: f64) -> Choice {
             Some(error),
         ),
     };
-    Choice { what: "method".into(), value: names(best)[1].into(), why, error }
+    let mut value = names(best)[1].to_string();
+    if best.straight {
+        let names: Vec<&str> = plan.by_vertex.iter().map(|mesh| mesh.name.as_str()).collect();
+        let other = cheapest(candidates, |c| !c.straight);
+        value += &format!(", {} by vertex", names.len());
+        why += &format!(
+            "; by vertex, as edges bow by up to {BOW} texel and the bias covers their distances: {}; \
+             without that it would be {}",
+            names.join(", "),
+            instead(best, other)
+        );
+    }
+    Choice { what: "method".into(), value, why, error }
 }
 
 fn filter_line(candidates: &[Candidate], best: &Candidate) -> Choice {
@@ -256,8 +278,8 @@ fn filter_line(candidates: &[Candidate], best: &Candidate) -> Choice {
             instead(best, other)
         ),
         Sampling::Linear => format!(
-            "2 x 2 texels are half a texel off at most, with the footprint's bias, which the gaps \
-             that must hold allow; one texel would be {}",
+            "2 x 2 texels, with the footprint's bias, which the gaps that must hold allow; one texel \
+             would be {}",
             instead(best, other)
         ),
     };

@@ -25,6 +25,7 @@ mod error;
 mod explain;
 mod score;
 mod sight;
+pub mod straight;
 mod target;
 
 pub use error::PlanError;
@@ -73,6 +74,8 @@ pub struct Request<'a> {
     pub budget: Option<u64>,
     /// What steps cost.
     pub rates: Rates,
+    /// What they cost of meshes that are drawn by the vertex method.
+    pub straight_rates: Rates,
     /// Chooses the receivers.
     pub seed: u64,
 }
@@ -90,14 +93,15 @@ impl<'a> Request<'a> {
             error,
             budget: None,
             rates: Rates::LLVMPIPE,
+            straight_rates: Rates::LLVMPIPE_STRAIGHT,
             seed: 1,
         }
     }
 }
 
-/// A mesh that is left out of the maps.
+/// A mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LeftOut {
+pub struct Named {
     /// Its place among the scene's meshes, from 0.
     pub mesh: usize,
     /// Its name.
@@ -140,7 +144,9 @@ pub struct Plan {
     /// Far sphere's radius.
     pub far: f32,
     /// Meshes that are not drawn into the maps.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<Named>,
+    /// Meshes that the vertex method draws; `method` draws all others.
+    pub by_vertex: Vec<Named>,
     /// True where the target is met, as predicted.
     pub meets: bool,
     /// The predicted error, in the target's unit.
@@ -172,19 +178,22 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
         frames.iter().map(|frame| cost::seen(request.scene, &kept, origin(frame))).collect();
     let sorted = seen.iter().map(Vec::len).max().unwrap_or(0);
     let [width, height] = request.image.map(u64::from);
+    let plain = |axis: &Axis| {
+        let size = choose::ladder(axis.demand * choose::reach(false));
+        cost::generation(&request.rates, &axis.loads, sorted, size)
+    };
+    let judge = Judge { samples: &samples, seen: &seen, cost: &plain };
+    let axes = axes(request, &judge, view.as_ref());
+    let meshes: Vec<_> =
+        axes.iter().map(|axis| straight::meshes(&seen, axis.axis, axis.maps as usize)).collect();
     let case = Case {
         samples: &samples,
         spheres: [near, far],
         sorted,
         pixels: width * height,
-        rates: &request.rates,
+        rates: [&request.rates, &request.straight_rates],
+        meshes: &meshes,
     };
-    let plain = |axis: &Axis| {
-        let size = choose::ladder(case.edge_size(axis, Sampling::Nearest));
-        cost::generation(&request.rates, &axis.loads, sorted, size)
-    };
-    let judge = Judge { samples: &samples, seen: &seen, cost: &plain };
-    let axes = axes(request, &judge, view.as_ref());
     let mut candidates: Vec<Candidate> =
         axes.iter().enumerate().flat_map(|(index, axis)| case.candidates(index, axis)).collect();
     let fits = |candidate: &&Candidate| request.budget.is_none_or(|most| candidate.bytes <= most);
@@ -205,10 +214,10 @@ impl Plan {
         if self.version != VERSION {
             return Err(PlanError::Version(self.version));
         }
-        let named = |out: &LeftOut| scene.meshes.get(out.mesh).is_some_and(|m| m.name == out.name);
+        let named = |out: &Named| scene.meshes.get(out.mesh).is_some_and(|m| m.name == out.name);
         match meshes == self.meshes
             && triangles == self.triangles
-            && self.left_out.iter().all(named)
+            && self.left_out.iter().chain(&self.by_vertex).all(named)
         {
             true => Ok(()),
             false => Err(PlanError::Scene {
@@ -233,14 +242,16 @@ impl Plan {
             other => return Err(unknown("method", other)),
         };
         let mut casting = vec![Casting::By(method); self.meshes];
-        for out in &self.left_out {
-            if let Some(mesh) = casting.get_mut(out.mesh) {
-                *mesh = Casting::LeftOut;
+        let by_vertex = self.by_vertex.iter().map(|of| (of, Casting::By(Method::Vertex)));
+        let left_out = self.left_out.iter().map(|of| (of, Casting::LeftOut));
+        for (of, as_what) in by_vertex.chain(left_out) {
+            if let Some(mesh) = casting.get_mut(of.mesh) {
+                *mesh = as_what;
             }
         }
         Ok(Settings {
             size: self.size,
-            casting: if self.left_out.is_empty() { Vec::new() } else { casting },
+            casting,
             format: match self.format.as_str() {
                 "d16" => Format::D16,
                 "d32" => Format::D32,
@@ -273,7 +284,9 @@ fn within_budget(request: &Request<'_>, case: &Case<'_>, axes: &[Axis]) -> Vec<C
             let texels = most / (u64::from(axis.maps) * choose::texel_bytes(format));
             let size = choose::ladder_below((texels as f64).sqrt());
             for sampling in [Sampling::Nearest, Sampling::Linear] {
-                found.extend(size.map(|s| case.candidate(index, axis, s, format, sampling)));
+                let how = (format, sampling, false);
+                let at = |size| case.candidate(index, axis, size, how);
+                found.extend(size.map(at));
             }
         }
     }
@@ -371,11 +384,16 @@ fn receivers(
     }
 }
 
-/// True where an eye sees the side of a point's surface that the light is on: the other side is
-/// dark whatever the maps say.
+/// A surface that gets less of the light than this is as good as dark: a white one in the host's
+/// ambient light of a fifth changes by three steps of 255 between lit and shadowed.
+const FAINT: f64 = 0.01;
+
+/// True where an eye sees the side of a point's surface that the light is on, and the light is not
+/// so grazing that nothing shows: else it is dark whatever the maps say.
 pub fn shows(point: &Point, light: DVec3, eye: DVec3) -> bool {
-    let side = |from: DVec3| point.normal.map_or(0.0, |normal| normal.dot(from - point.world));
-    side(light) * side(eye) >= 0.0
+    let Some(normal) = point.normal else { return true };
+    let side = |from: DVec3| normal.dot((from - point.world).normalize_or_zero());
+    side(light) * side(eye) >= 0.0 && side(light).abs() >= FAINT
 }
 
 /// The light's position.

@@ -23,8 +23,8 @@ pub struct Sight<'a> {
 enum Along {
     /// It reaches the receiver's plane.
     Lit,
-    /// Something keeps it from the plane, so far in front of it.
-    Dark(f64),
+    /// Something keeps it from the plane: how far in front of it, and its own distance.
+    Dark { gap: f64, occluder: f64 },
     /// It misses the plane.
     Beyond,
 }
@@ -58,6 +58,9 @@ pub struct Sample {
     /// allowed angle. Infinite for a lit point, and where an edge is so near that the target
     /// forgives its light.
     pub gap: [f64; 2],
+    /// How much nearer than the point what shadows it is: at the point, and the least around it.
+    /// Infinite likewise.
+    pub behind: [f64; 2],
 }
 
 /// Azimuths in which a plan looks for edges, and how far, in allowed angles: a ring near enough to
@@ -74,7 +77,15 @@ const HALVINGS: u32 = 6;
 impl Sample {
     /// The least gap within an angle, at most the allowed one: between the two that are known.
     pub fn gap_within(&self, angle: f64) -> f64 {
-        let [own, around] = self.gap;
+        self.between(self.gap, angle)
+    }
+
+    /// How much nearer than the point its occluders within an angle are at the least.
+    pub fn behind_within(&self, angle: f64) -> f64 {
+        self.between(self.behind, angle)
+    }
+
+    fn between(&self, [own, around]: [f64; 2], angle: f64) -> f64 {
         own + (around - own) * (angle / self.allowed).min(1.0)
     }
 
@@ -100,9 +111,9 @@ impl Sight<'_> {
         let allowed = target.angle(distance);
         let rings = RINGS.map(|ring| ring * allowed);
         let edge = self.edge(point, &rings, AZIMUTHS, Ends::Pass);
-        let gap = match edge > allowed {
-            true => self.gap(point, direction, allowed),
-            false => [f64::INFINITY; 2],
+        let [gap, behind] = match edge > allowed {
+            true => self.gaps(point, direction, allowed),
+            false => [[f64::INFINITY; 2]; 2],
         };
         Some(Sample {
             direction,
@@ -112,6 +123,7 @@ impl Sight<'_> {
             room: if edge.is_finite() { allowed } else { rings[1] },
             edge,
             gap,
+            behind,
         })
     }
 
@@ -123,7 +135,7 @@ impl Sight<'_> {
         let differs =
             |azimuth: f64, angle: f64| match self.along(point, turned(axis, azimuth, angle)) {
                 Along::Lit => !lit,
-                Along::Dark(_) => lit,
+                Along::Dark { .. } => lit,
                 Along::Beyond => ends == Ends::Count,
             };
         let mut inner = 0.0;
@@ -159,7 +171,7 @@ impl Sight<'_> {
         let differs = |share: f64| match self.along(point, from.lerp(direction, share).normalize())
         {
             Along::Lit => !lit,
-            Along::Dark(_) => lit,
+            Along::Dark { .. } => lit,
             Along::Beyond => true,
         };
         if !differs(1.0) {
@@ -178,17 +190,22 @@ impl Sight<'_> {
         self.truth.occluder(self.origin, point.world, point.triangle, 0.0).is_none()
     }
 
-    /// The gap of a shadowed point, and the least of its plane around it.
-    fn gap(&self, point: &Point, direction: DVec3, angle: f64) -> [f64; 2] {
-        let Along::Dark(own) = self.along(point, direction) else { return [f64::INFINITY; 2] };
+    /// The gap of a shadowed point and the least of its plane around it, and how much nearer than
+    /// the point its occluder is, likewise.
+    fn gaps(&self, point: &Point, direction: DVec3, angle: f64) -> [[f64; 2]; 2] {
+        let distance = (point.world - self.origin).length();
+        let Along::Dark { gap, occluder } = self.along(point, direction) else {
+            return [[f64::INFINITY; 2]; 2];
+        };
+        let behind = distance - occluder;
         let around = (0..AZIMUTHS).map(|k| TAU * f64::from(k) / f64::from(AZIMUTHS));
-        let least = around.fold(own, |least, azimuth| {
+        let [least_gap, least_behind] = around.fold([gap, behind], |[least, nearest], azimuth| {
             match self.along(point, turned(direction, azimuth, angle)) {
-                Along::Dark(gap) => least.min(gap),
-                _ => least,
+                Along::Dark { gap, occluder } => [least.min(gap), nearest.min(distance - occluder)],
+                _ => [least, nearest],
             }
         });
-        [own, least]
+        [[gap, least_gap], [behind, least_behind]]
     }
 
     /// Where a direction of the light meets a point's triangle, as an eye sees it, or for `None`
@@ -221,7 +238,7 @@ impl Sight<'_> {
         }
         let there = self.origin + direction * distance;
         match self.truth.occluder(self.origin, there, point.triangle, 0.0) {
-            Some(hit) => Along::Dark(distance - hit.distance),
+            Some(hit) => Along::Dark { gap: distance - hit.distance, occluder: hit.distance },
             None => Along::Lit,
         }
     }
