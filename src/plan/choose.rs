@@ -3,8 +3,7 @@
 use super::Sample;
 use super::axis::Axis;
 use super::cost::{Rates, generation};
-use super::straight::{BOW, MeshLoad};
-use crate::render::{Format, Method, depth_tolerance, guard_band};
+use crate::render::{Format, Method, Settings, depth_tolerance, guard_band};
 use crate::scalar::bias::{
     DPSM_RECEIVER_ROUNDING, dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver,
 };
@@ -12,17 +11,19 @@ use crate::scalar::float::{self as scalar, Vec2};
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::Sampling;
 
-/// How far from the true edge a point that is lit wrongly may be, in texels, but for one in ten
-/// thousand of them: half a texel's diagonal, 0.707, to its texel's centre, bounds them all
-/// (docs/plan.md).
-const REACH: f64 = 0.652;
+/// How far from the true edge a point that is lit wrongly may be, in texels: half a texel's diagonal,
+/// to its texel's centre. 2 x 2 texels compared together err by half a texel along a straight edge,
+/// but by nearly as much as one at the corner of a shadow (docs/plan.md).
+const REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// How far the texels are, in texels, that 2 x 2 comparisons read, but for those of less weight.
 const HARDWARE_WINDOW: f64 = 1.0;
 
-/// Footprint biases that must fit: the one that is taken, and as much again for what is thinner than
-/// what the samples meet.
-const BIASES: f64 = 2.0;
+/// Gaps thinner than those that the samples meet: a strip beside a concave edge is seldom met, and
+/// the thinner the gap the narrower it is. So 2 x 2 comparisons must leave so many footprint biases,
+/// and the hybrid method is allowed so little of its usual error of distances, which forgives gaps.
+const BIASES: f64 = 8.0;
+const TOLERANCE: f64 = 1.0 / 16.0;
 
 /// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
 /// a gap to be forgiven.
@@ -37,8 +38,8 @@ pub const LEAST_SIZE: u32 = 16;
 /// Largest map: WebGPU's limit without asking for more.
 pub const MOST_SIZE: u32 = 8192;
 
-/// Hybrid maps whose distances must be this much finer than usual are drawn exactly: nearly all
-/// of their triangles would be.
+/// Hybrid maps whose distances must be this much finer still are drawn exactly: nearly all of their
+/// triangles would be.
 const EXACT_BELOW: f64 = 1.0 / 8.0;
 
 /// A way to make and read maps.
@@ -52,8 +53,6 @@ pub struct Candidate {
     pub format: Format,
     /// Hybrid or exact.
     pub method: Method,
-    /// True where meshes are drawn by the vertex method that may be.
-    pub straight: bool,
     /// Relative error of distances that the hybrid method is allowed.
     pub tolerance: f32,
     /// Hard test or 2 x 2.
@@ -90,18 +89,16 @@ pub struct Case<'a> {
     pub sorted: usize,
     /// Pixels that look.
     pub pixels: u64,
-    /// What steps cost, sorted and straight.
-    pub rates: [&'a Rates; 2],
-    /// The meshes that are kept, as each axis sees them.
-    pub meshes: &'a [Vec<MeshLoad>],
+    /// What steps cost.
+    pub rates: &'a Rates,
 }
 
-/// Format, sampling, and whether meshes are drawn straight that may be.
-pub type How = (Format, Sampling, bool);
+/// Format and sampling.
+pub type How = (Format, Sampling);
 
-/// How many texels a lookup may be off, but for few wrong points; more where edges are straight.
-pub fn reach(straight: bool) -> f64 {
-    REACH + if straight { BOW } else { 0.0 }
+/// How many texels a lookup may be off, edges drawn off by tau among them.
+pub fn reach() -> f64 {
+    REACH + f64::from(Settings::default().tau)
 }
 
 /// Bytes of a texel.
@@ -130,54 +127,27 @@ fn step(size: u32) -> u32 {
 }
 
 impl Case<'_> {
-    /// The size that the shadow edges ask for, with lookups off by so many texels.
-    pub fn edge_size(&self, axis: &Axis, reach: f64) -> f64 {
-        let plain = axis.demand * reach;
+    /// The size that the shadow edges ask for.
+    pub fn edge_size(&self, axis: &Axis) -> f64 {
+        let plain = axis.demand * reach();
         // the guard band is part of the side
         plain * f64::from(1.0 + guard_band(plain.clamp(1.0, f64::from(MOST_SIZE)) as u32))
     }
 
     /// All candidates of an axis, from the size that the edges ask for upwards.
     pub fn candidates(&self, index: usize, axis: &Axis) -> Vec<Candidate> {
+        let least = ladder(self.edge_size(axis));
+        let most = (f64::from(least) * FINER).min(f64::from(MOST_SIZE)) as u32;
+        let next = |size: &u32| Some(size + step(*size)).filter(|size| *size <= most);
         let mut found = Vec::new();
-        for (sampling, straight) in
-            [(Sampling::Nearest, false), (Sampling::Linear, false), (Sampling::Linear, true)]
-        {
-            let least = ladder(self.edge_size(axis, reach(straight)));
-            let most = (f64::from(least) * FINER).min(f64::from(MOST_SIZE)) as u32;
-            for format in [Format::D16, Format::D32] {
-                let mut size = least;
-                while size <= most {
-                    // without a mesh that is drawn straight it is the one before it
-                    if !straight || !self.by_vertex(index, size).is_empty() {
-                        let how = (format, sampling, straight);
-                        found.push(self.candidate(index, axis, size, how));
-                    }
-                    size += step(size);
+        for size in std::iter::successors(Some(least), next) {
+            for sampling in [Sampling::Nearest, Sampling::Linear] {
+                for format in [Format::D16, Format::D32] {
+                    found.push(self.candidate(index, axis, size, (format, sampling)));
                 }
             }
         }
         found
-    }
-
-    /// The meshes that the vertex method draws as well, and for less.
-    pub fn by_vertex(&self, axis: usize, size: u32) -> Vec<usize> {
-        let [sorted, straight] = self.rates;
-        let saves = |mesh: &&MeshLoad| mesh.saves(sorted, straight, size).is_some();
-        self.meshes[axis].iter().filter(saves).map(|mesh| mesh.mesh).collect()
-    }
-
-    /// Milliseconds to make the maps.
-    fn generation(&self, index: usize, axis: &Axis, size: u32, straight: bool) -> f64 {
-        let [sorted, vertex] = self.rates;
-        let all = generation(sorted, &axis.loads, self.sorted, size);
-        match straight {
-            true => {
-                let saved = self.meshes[index].iter().filter_map(|m| m.saves(sorted, vertex, size));
-                all - saved.sum::<f64>()
-            }
-            false => all,
-        }
     }
 
     /// One candidate, whatever its error.
@@ -186,30 +156,29 @@ impl Case<'_> {
         index: usize,
         axis: &Axis,
         size: u32,
-        (format, sampling, straight): How,
+        (format, sampling): How,
     ) -> Candidate {
-        let usual = f64::from(depth_tolerance(size));
-        let (room, gap_share) = self.gaps(axis, size, (format, sampling, straight));
+        let usual = TOLERANCE * f64::from(depth_tolerance(size));
+        let (room, gap_share) = self.gaps(axis, size, (format, sampling));
         let (method, tolerance) = match room {
             room if room >= usual => (Method::Hybrid, usual),
             room if room >= usual * EXACT_BELOW => (Method::Hybrid, room),
             _ => (Method::Exact, 0.0),
         };
-        let edge_share = self.edge_size(axis, reach(straight)) / f64::from(size);
+        let edge_share = self.edge_size(axis) / f64::from(size);
         let maps = u64::from(axis.maps);
         Candidate {
             axis: index,
             size,
             format,
             method,
-            straight,
             tolerance: tolerance as f32,
             sampling,
-            generation: self.generation(index, axis, size, straight),
+            generation: generation(self.rates, &axis.loads, self.sorted, size),
             lookup: self.pixels as f64
                 * match sampling {
-                    Sampling::Nearest => self.rates[0].hard,
-                    Sampling::Linear => self.rates[0].hardware,
+                    Sampling::Nearest => self.rates.hard,
+                    Sampling::Linear => self.rates.hardware,
                 },
             bytes: maps * u64::from(size) * u64::from(size) * texel_bytes(format),
             share: edge_share.max(gap_share),
@@ -218,11 +187,10 @@ impl Case<'_> {
 
     /// The relative error of distances that the gaps leave for the method, and the error as a
     /// share of the target where exact maps forgive a gap that must hold.
-    fn gaps(&self, axis: &Axis, size: u32, (format, sampling, straight): How) -> (f64, f64) {
+    fn gaps(&self, axis: &Axis, size: u32, (format, sampling): How) -> (f64, f64) {
         let light = self.light(size);
         let range = light.far - light.near;
         let quantum = f64::from(format.quantum());
-        let reach = reach(straight);
         let left = |sample: &Sample| {
             let cosine = sample.direction.dot(axis.axis);
             let pitch = 2.0 * (1.0 + cosine.abs()) * (1.0 + light.guard) / light.size;
@@ -231,12 +199,10 @@ impl Case<'_> {
             // what is stored may be the neighbour above
             let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range + lean;
             match sampling {
-                Sampling::Nearest => sample.gap_within(reach * pitch) - slack,
-                // the receiver's own distance less the bias is compared; straight triangles may be
-                // stored as much farther
+                Sampling::Nearest => sample.gap_within(reach() * pitch) - slack,
+                // the receiver's own distance less the bias is compared
                 Sampling::Linear => {
-                    let biases = if straight { BIASES + 1.0 } else { BIASES };
-                    let bias = biases * range * footprint(sample, cosine, &light);
+                    let bias = BIASES * range * footprint(sample, cosine, &light);
                     sample.behind_within(HARDWARE_WINDOW * pitch) - slack - bias
                 }
             }

@@ -54,16 +54,7 @@ impl Rates {
 /// A triangle as the light sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Its mesh's place among the scene's.
-    pub(super) mesh: usize,
-    /// Unit directions of its corners.
-    pub(super) corners: [DVec3; 3],
-    /// The widest angle of a side.
-    pub(super) widest: f64,
-    /// The least cosine of the incidence at a corner.
-    pub(super) steepest: f64,
-    /// How much farther its farthest corner is than its nearest, of that.
-    pub(super) spread: f64,
+    corners: [DVec3; 3],
     middle: DVec3,
     /// Its sides' angles, together.
     outline: f64,
@@ -93,35 +84,24 @@ impl Load {
 
 /// The triangles of the meshes that are kept, as a light sees them.
 pub fn seen(scene: &Scene, kept: &[bool], light: DVec3) -> Vec<Seen> {
-    let meshes = scene.meshes.iter().zip(kept).enumerate().filter(|(_, (_, kept))| **kept);
-    let triangles = meshes.flat_map(|(index, (mesh, _))| {
+    let meshes = scene.meshes.iter().zip(kept).filter(|(_, kept)| **kept);
+    let triangles = meshes.flat_map(|(mesh, _)| {
         let corner = |i: u32| mesh.positions[i as usize].as_dvec3() - light;
-        mesh.triangles.iter().filter_map(move |t| Seen::of(index, t.map(corner)))
+        mesh.triangles.iter().filter_map(move |t| Seen::of(t.map(corner)))
     });
     triangles.collect()
 }
 
 impl Seen {
-    fn of(mesh: usize, corners: [DVec3; 3]) -> Option<Self> {
+    fn of(corners: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let lengths = corners.map(DVec3::length);
-        let cosines = corners.map(|p| (normal.dot(p) / p.length()).abs());
-        let [nearest, farthest] = [
-            lengths.into_iter().fold(f64::INFINITY, f64::min),
-            lengths.into_iter().fold(0.0, f64::max),
-        ];
         let [a, b, c] = [a.try_normalize()?, b.try_normalize()?, c.try_normalize()?];
         let angle = |p: DVec3, q: DVec3| p.cross(q).length().atan2(p.dot(q));
         // van Oosterom and Strackee 1983
         let volume = a.dot(b.cross(c)).abs();
         let area = 2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a));
         Some(Self {
-            mesh,
             corners: [a, b, c],
-            widest: angle(a, b).max(angle(b, c)).max(angle(c, a)),
-            steepest: cosines.into_iter().fold(1.0, f64::min),
-            spread: farthest / nearest - 1.0,
             middle: (a + b + c).normalize_or(a),
             outline: angle(a, b) + angle(b, c) + angle(c, a),
             area,

@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::axis::Axis;
 use super::casters::Reason;
 use super::choose::{Candidate, Case, reach};
-use super::straight::BOW;
-use super::{Named, Plan, Request, VERSION};
+use super::{LeftOut, Plan, Request, VERSION};
 use crate::render::{Format, Method, Settings};
 use crate::scalar::maps::Sampling;
 
@@ -51,12 +50,7 @@ pub fn explained(
     let left_out_meshes = left_out.iter().zip(&request.scene.meshes).enumerate();
     let left_out_meshes = left_out_meshes
         .filter(|(_, (reason, _))| reason.is_some())
-        .map(|(mesh, (_, of))| Named { mesh, name: of.name.clone() });
-    let by_vertex = match best.straight {
-        true => case.by_vertex(best.axis, best.size),
-        false => Vec::new(),
-    };
-    let named = |mesh: usize| Named { mesh, name: request.scene.meshes[mesh].name.clone() };
+        .map(|(mesh, (_, of))| LeftOut { mesh, name: of.name.clone() });
     let error = |share: f64| request.error.value() * share;
     let mut plan = Plan {
         version: VERSION,
@@ -76,7 +70,6 @@ pub fn explained(
         near: case.spheres[0],
         far: case.spheres[1],
         left_out: left_out_meshes.collect(),
-        by_vertex: by_vertex.into_iter().map(named).collect(),
         meets: best.share <= 1.0,
         predicted: request.error.with(error(best.share)),
         milliseconds: [best.generation, best.lookup],
@@ -89,8 +82,8 @@ pub fn explained(
         why,
         error,
     };
-    let reach = reach(best.straight);
-    let edge_size = case.edge_size(axis, reach);
+    let reach = reach();
+    let edge_size = case.edge_size(axis);
     let edges = edge_size / f64::from(best.size);
     plan.choices = vec![
         hemispheres(request, axes, candidates, best),
@@ -101,19 +94,13 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup is off by up to {reach} texel, but for 1 in 10,000 that are; the shadow \
-                 edges that show ask for {:.0}",
+                "a lookup is off by up to {reach:.3} texel; the shadow edges that show ask for {:.0}",
                 edge_size
             ),
             Some(error(edges)),
         ),
         format_line(case, candidates, best),
-        method_line(
-            &plan,
-            candidates,
-            best,
-            error(edges * f64::from(Settings::default().tau) / reach),
-        ),
+        method_line(best, error(edges * f64::from(Settings::default().tau) / reach)),
         filter_line(candidates, best),
         line(
             "whole",
@@ -132,10 +119,7 @@ pub fn explained(
 }
 
 /// The cheapest candidate that meets the target among some.
-fn cheapest<'c>(
-    candidates: &'c [Candidate],
-    wanted: impl Fn(&Candidate) -> bool,
-) -> Option<&'c Candidate> {
+fn cheapest(candidates: &[Candidate], wanted: impl Fn(&Candidate) -> bool) -> Option<&Candidate> {
     let fits = candidates.iter().filter(|c| c.share <= 1.0 && wanted(c));
     fits.min_by(|a, b| a.order(b))
 }
@@ -241,32 +225,20 @@ fn format_line(case: &Case<'_>, candidates: &[Candidate], best: &Candidate) -> C
     Choice { what: "format".into(), value: names(best)[0].into(), why, error: None }
 }
 
-fn method_line(plan: &Plan, candidates: &[Candidate], best: &Candidate, error: f64) -> Choice {
-    let (mut why, error) = match best.method {
+fn method_line(best: &Candidate, error: f64) -> Choice {
+    let (why, error) = match best.method {
         Method::Exact => ("the gaps that must hold leave nothing for flat triangles".into(), None),
         _ => (
             format!(
-                "flat triangles where edges stay within {} texel and distances within {:.1e}, which \
-                 the gaps that must hold allow",
+                "for every mesh that is kept; flat triangles where edges stay within {} texel and \
+                 distances within {:.1e}, which the gaps that must hold allow",
                 Settings::default().tau,
                 best.tolerance
             ),
             Some(error),
         ),
     };
-    let mut value = names(best)[1].to_string();
-    if best.straight {
-        let names: Vec<&str> = plan.by_vertex.iter().map(|mesh| mesh.name.as_str()).collect();
-        let other = cheapest(candidates, |c| !c.straight);
-        value += &format!(", {} by vertex", names.len());
-        why += &format!(
-            "; by vertex, as edges bow by up to {BOW} texel and the bias covers their distances: {}; \
-             without that it would be {}",
-            names.join(", "),
-            instead(best, other)
-        );
-    }
-    Choice { what: "method".into(), value, why, error }
+    Choice { what: "method".into(), value: names(best)[1].into(), why, error }
 }
 
 fn filter_line(candidates: &[Candidate], best: &Candidate) -> Choice {

@@ -25,7 +25,6 @@ mod error;
 mod explain;
 mod score;
 mod sight;
-pub mod straight;
 mod target;
 
 pub use error::PlanError;
@@ -74,8 +73,6 @@ pub struct Request<'a> {
     pub budget: Option<u64>,
     /// What steps cost.
     pub rates: Rates,
-    /// What they cost of meshes that are drawn by the vertex method.
-    pub straight_rates: Rates,
     /// Chooses the receivers.
     pub seed: u64,
 }
@@ -93,15 +90,14 @@ impl<'a> Request<'a> {
             error,
             budget: None,
             rates: Rates::LLVMPIPE,
-            straight_rates: Rates::LLVMPIPE_STRAIGHT,
             seed: 1,
         }
     }
 }
 
-/// A mesh.
+/// A mesh that is left out of the maps.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Named {
+pub struct LeftOut {
     /// Its place among the scene's meshes, from 0.
     pub mesh: usize,
     /// Its name.
@@ -144,9 +140,7 @@ pub struct Plan {
     /// Far sphere's radius.
     pub far: f32,
     /// Meshes that are not drawn into the maps.
-    pub left_out: Vec<Named>,
-    /// Meshes that the vertex method draws; `method` draws all others.
-    pub by_vertex: Vec<Named>,
+    pub left_out: Vec<LeftOut>,
     /// True where the target is met, as predicted.
     pub meets: bool,
     /// The predicted error, in the target's unit.
@@ -179,20 +173,17 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let sorted = seen.iter().map(Vec::len).max().unwrap_or(0);
     let [width, height] = request.image.map(u64::from);
     let plain = |axis: &Axis| {
-        let size = choose::ladder(axis.demand * choose::reach(false));
+        let size = choose::ladder(axis.demand * choose::reach());
         cost::generation(&request.rates, &axis.loads, sorted, size)
     };
     let judge = Judge { samples: &samples, seen: &seen, cost: &plain };
     let axes = axes(request, &judge, view.as_ref());
-    let meshes: Vec<_> =
-        axes.iter().map(|axis| straight::meshes(&seen, axis.axis, axis.maps as usize)).collect();
     let case = Case {
         samples: &samples,
         spheres: [near, far],
         sorted,
         pixels: width * height,
-        rates: [&request.rates, &request.straight_rates],
-        meshes: &meshes,
+        rates: &request.rates,
     };
     let mut candidates: Vec<Candidate> =
         axes.iter().enumerate().flat_map(|(index, axis)| case.candidates(index, axis)).collect();
@@ -214,10 +205,10 @@ impl Plan {
         if self.version != VERSION {
             return Err(PlanError::Version(self.version));
         }
-        let named = |out: &Named| scene.meshes.get(out.mesh).is_some_and(|m| m.name == out.name);
+        let named = |out: &LeftOut| scene.meshes.get(out.mesh).is_some_and(|m| m.name == out.name);
         match meshes == self.meshes
             && triangles == self.triangles
-            && self.left_out.iter().chain(&self.by_vertex).all(named)
+            && self.left_out.iter().all(named)
         {
             true => Ok(()),
             false => Err(PlanError::Scene {
@@ -242,11 +233,9 @@ impl Plan {
             other => return Err(unknown("method", other)),
         };
         let mut casting = vec![Casting::By(method); self.meshes];
-        let by_vertex = self.by_vertex.iter().map(|of| (of, Casting::By(Method::Vertex)));
-        let left_out = self.left_out.iter().map(|of| (of, Casting::LeftOut));
-        for (of, as_what) in by_vertex.chain(left_out) {
-            if let Some(mesh) = casting.get_mut(of.mesh) {
-                *mesh = as_what;
+        for out in &self.left_out {
+            if let Some(mesh) = casting.get_mut(out.mesh) {
+                *mesh = Casting::LeftOut;
             }
         }
         Ok(Settings {
@@ -284,7 +273,7 @@ fn within_budget(request: &Request<'_>, case: &Case<'_>, axes: &[Axis]) -> Vec<C
             let texels = most / (u64::from(axis.maps) * choose::texel_bytes(format));
             let size = choose::ladder_below((texels as f64).sqrt());
             for sampling in [Sampling::Nearest, Sampling::Linear] {
-                let how = (format, sampling, false);
+                let how = (format, sampling);
                 let at = |size| case.candidate(index, axis, size, how);
                 found.extend(size.map(at));
             }

@@ -107,7 +107,8 @@ impl FromStr for Target {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
-        let units: [(&str, fn(f64) -> Self); 3] =
+        type Make = fn(f64) -> Target;
+        let units: [(&str, Make); 3] =
             [("texels", Self::Texels), ("texel", Self::Texels), ("deg", Self::Degrees)];
         let found = units.iter().find_map(|(unit, make)| Some((text.strip_suffix(unit)?, *make)));
         let (number, make) = found.unwrap_or((text, Self::Units));

@@ -1,12 +1,12 @@
 //! Shadow edges: how far a lookup may be off, and how far planned maps are.
 
 use dpsm::cpu;
-use dpsm::measure::{Bench, affine_depth, bowed_edges, truth_of, truth_of_casters};
+use dpsm::measure::{Bench, truth_of, truth_of_casters};
 use dpsm::plan::axis::Judge;
 use dpsm::plan::choose::reach;
 use dpsm::plan::cost::{self, loads};
-use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Wrong, plan, shows, straight};
-use dpsm::render::{Casting, Frame, Method, Settings};
+use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Wrong, plan, shows};
+use dpsm::render::{Frame, Settings};
 use dpsm::scalar::float::Vec2;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scalar::paraboloid::dpsm_texel_pitch;
@@ -49,20 +49,16 @@ fn wrong_by(rng: &mut Rng, sampling: Sampling, corner: bool) -> Option<f64> {
 }
 
 #[test]
-fn few_wrong_points_are_beyond_the_reach_and_none_beyond_half_a_diagonal() {
+fn no_wrong_point_is_beyond_half_a_diagonal_and_some_come_near_it() {
     const POINTS: usize = 4_000_000;
     let mut rng = Rng::with_seed(11);
     let mut wrong = |sampling, corner| -> Vec<f64> {
         (0..POINTS).filter_map(|_| wrong_by(&mut rng, sampling, corner)).collect()
     };
     let hard = wrong(Sampling::Nearest, false);
-    let beyond = hard.iter().filter(|by| **by > reach(false)).count() as f64;
-    let share = beyond / hard.len() as f64;
-    // a count of k is off by its root, taken four times; the reach has three digits, whose half a
-    // thousandth changes the share by at most 3% of it
-    assert!((share / 1e-4 - 1.0).abs() < 4.0 / beyond.sqrt() + 0.03, "{share:.3e}");
     // half a diagonal; along an edge 2 x 2 texels err by half a texel, at corners by as much as one
-    let diagonal = 0.5_f64.sqrt();
+    let diagonal = reach() - f64::from(Settings::default().tau);
+    assert!((diagonal - 0.5_f64.sqrt()).abs() < f64::EPSILON);
     let most = |wrong: Vec<f64>| wrong.into_iter().fold(0.0, f64::max);
     for (name, largest, bound) in [
         ("hard", most(hard), diagonal),
@@ -70,7 +66,7 @@ fn few_wrong_points_are_beyond_the_reach_and_none_beyond_half_a_diagonal() {
         ("2 x 2", most(wrong(Sampling::Linear, false)), 0.5),
         ("2 x 2, corners", most(wrong(Sampling::Linear, true)), diagonal),
     ] {
-        println!("{name}: {largest:.4} of {bound:.4}; {share:.2e} of the hard beyond the reach");
+        println!("{name}: {largest:.4} of {bound:.4}");
         // wrong points thin out towards the bound: of so many the largest is within a tenth
         assert!(largest <= bound && largest > 0.9 * bound, "{name}: {largest} of {bound}");
     }
@@ -204,56 +200,4 @@ fn planned_maps_keep_shadow_edges_within_the_target() {
         assert!(wrong.wrong > 20, "{name}: {wrong:?}");
         assert!(wrong.share <= 1.0, "{name}: {wrong:?}\n{explanation}");
     }
-}
-
-#[test]
-fn meshes_drawn_straight_bow_and_err_by_no_more_than_is_planned() {
-    let scene = built_in("brabec-room");
-    let light = vec3(0.0, 2.0, 0.0);
-    let kept = vec![true; scene.meshes.len()];
-    let seen = [cost::seen(&scene, &kept, light.as_dvec3())];
-    let axis = dvec3(0.1, -1.0, 0.07).normalize();
-    let camera = scene.camera.unwrap();
-    let mut straight = 0;
-    for of_mesh in straight::meshes(&seen, axis, 2) {
-        let size = of_mesh.largest.min(2048.0) as u32;
-        if size < 64 {
-            continue;
-        }
-        let settings = Settings { size, method: Method::Vertex, ..Settings::default() };
-        let frame = Frame::new(&scene, light, axis.as_vec3(), false, &camera, settings).unwrap();
-        let truth = truth_of(&frame);
-        let empty = DepthMaps::empty(1, 2, Sampling::Nearest);
-        let bench = Bench::new(&frame, &empty, &truth);
-        let triangles = frame.meshes[of_mesh.mesh].1.clone();
-        let bow = bowed_edges(&bench, triangles.clone()).measured;
-        // the prediction is the first term in the chord, of which a sixteenth of a texel leaves
-        // little: within a fiftieth
-        assert!(bow <= straight::BOW * 1.02, "mesh {}: bow {bow} at {size}", of_mesh.mesh);
-        let affine = affine_depth(&bench, triangles).measured;
-        assert!(affine < 1.0, "mesh {}: {affine}", of_mesh.mesh);
-        straight += 1;
-    }
-    // the fine sphere at least
-    assert!(straight > 0);
-}
-
-#[test]
-fn a_mesh_of_small_triangles_is_drawn_straight_and_keeps_the_target() {
-    let scene = built_in("brabec-room");
-    let camera = scene.camera.unwrap();
-    let request =
-        |rates| Request { camera: Some(camera), rates, ..Request::new(&scene, target("0.2deg")) };
-    // where sorting is dear, what need not be sorted is drawn straight
-    let dear = cost::Rates { sort: 0.01, ..cost::Rates::LLVMPIPE };
-    let plan = plan(&request(dear)).unwrap();
-    let names: Vec<&str> = plan.by_vertex.iter().map(|mesh| mesh.name.as_str()).collect();
-    let fine = ["sphere, fine", "torus, fine, hanging"];
-    assert!(!names.is_empty() && names.iter().all(|name| fine.contains(name)), "{names:?}");
-    let casting = plan.settings(&Settings::default()).unwrap().casting;
-    assert_eq!(casting[plan.by_vertex[0].mesh], Casting::By(Method::Vertex));
-    let light = scene.default_light().position;
-    let wrong = proof(&scene, light, &request(dear), &plan);
-    println!("{wrong:?}");
-    assert!(wrong.wrong > 20 && wrong.share <= 1.0, "{wrong:?}\n{}", plan.explanation());
 }
