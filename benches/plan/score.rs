@@ -6,7 +6,7 @@ use std::time::Instant;
 use dpsm::gpu::{self, Device, MeshBuffers, Parts, ShadowMaps};
 use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
 use dpsm::plan::choose::{LEAST_SIZE, ladder, ladder_below};
-use dpsm::plan::cost::{self, Rates, Seen};
+use dpsm::plan::cost::{self, EXACT, Rates, Seen};
 use dpsm::plan::{Plan, Proof, Request, Sight, Target, plan, shows};
 use dpsm::render::{Bias, Casting, Format, Frame, Method, Settings};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
@@ -208,6 +208,12 @@ impl Pose<'_> {
         }
         if !met {
             println!("    missed: {wrong:?}");
+            let at = proof.points().iter().find(|point| Some(point.world) == wrong.place);
+            if let Some(point) = at {
+                let judged = dpsm::measure::judge(&Bench::new(&frame, &maps, truth), point);
+                let cosine = point.normal.map(|n| n.dot((point.world - origin).normalize()));
+                println!("    incidence's cosine {cosine:.4?}: {judged:?}");
+            }
         }
         Ok(Score { share: wrong.share, met, cost, tried, timed, milliseconds: 0.0 })
     }
@@ -335,7 +341,8 @@ impl Pose<'_> {
             Sampling::Nearest => rates.hard,
             Sampling::Linear => rates.hardware,
         };
-        cost::generation(&rates, loads, seen.len(), settings.size) + lookup * width * height
+        let exact = if settings.method == Method::Exact { EXACT } else { 1.0 };
+        exact * cost::generation(&rates, loads, seen.len(), settings.size) + lookup * width * height
     }
 
     /// The plan's time to make its maps over the other's, in turn: medians.

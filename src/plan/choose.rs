@@ -2,8 +2,8 @@
 
 use super::Sample;
 use super::axis::Axis;
-use super::cost::{Rates, generation};
-use crate::render::{Format, Method, Settings, depth_tolerance, guard_band};
+use super::cost::{EXACT, Rates, generation};
+use crate::render::{Format, guard_band};
 use crate::scalar::bias::{
     DPSM_RECEIVER_ROUNDING, dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver,
 };
@@ -14,16 +14,14 @@ use crate::scalar::maps::Sampling;
 /// How far from the true edge a point that is lit wrongly may be, in texels: half a texel's diagonal,
 /// to its texel's centre. 2 x 2 texels compared together err by half a texel along a straight edge,
 /// but by nearly as much as one at the corner of a shadow (docs/plan.md).
-const REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
+pub const REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// How far the texels are, in texels, that 2 x 2 comparisons read, but for those of less weight.
 const HARDWARE_WINDOW: f64 = 1.0;
 
-/// Gaps thinner than those that the samples meet: a strip beside a concave edge is seldom met, and
-/// the thinner the gap the narrower it is. So 2 x 2 comparisons must leave so many footprint biases,
-/// and the hybrid method is allowed so little of its usual error of distances, which forgives gaps.
+/// Footprint biases that 2 x 2 comparisons must leave of a gap: a strip beside a concave edge is
+/// seldom met by a sample, and the thinner the gap the narrower it is.
 const BIASES: f64 = 8.0;
-const TOLERANCE: f64 = 1.0 / 16.0;
 
 /// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
 /// a gap to be forgiven.
@@ -38,10 +36,6 @@ pub const LEAST_SIZE: u32 = 16;
 /// Largest map: WebGPU's limit without asking for more.
 pub const MOST_SIZE: u32 = 8192;
 
-/// Hybrid maps whose distances must be this much finer still are drawn exactly: nearly all of their
-/// triangles would be.
-const EXACT_BELOW: f64 = 1.0 / 8.0;
-
 /// A way to make and read maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
@@ -51,10 +45,6 @@ pub struct Candidate {
     pub size: u32,
     /// Storage.
     pub format: Format,
-    /// Hybrid or exact.
-    pub method: Method,
-    /// Relative error of distances that the hybrid method is allowed.
-    pub tolerance: f32,
     /// Hard test or 2 x 2.
     pub sampling: Sampling,
     /// Making the maps, ms.
@@ -96,11 +86,6 @@ pub struct Case<'a> {
 /// Format and sampling.
 pub type How = (Format, Sampling);
 
-/// How many texels a lookup may be off, edges drawn off by tau among them.
-pub fn reach() -> f64 {
-    REACH + f64::from(Settings::default().tau)
-}
-
 /// Bytes of a texel.
 pub fn texel_bytes(format: Format) -> u64 {
     match format {
@@ -129,7 +114,7 @@ fn step(size: u32) -> u32 {
 impl Case<'_> {
     /// The size that the shadow edges ask for.
     pub fn edge_size(&self, axis: &Axis) -> f64 {
-        let plain = axis.demand * reach();
+        let plain = axis.demand * REACH;
         // the guard band is part of the side
         plain * f64::from(1.0 + guard_band(plain.clamp(1.0, f64::from(MOST_SIZE)) as u32))
     }
@@ -158,23 +143,15 @@ impl Case<'_> {
         size: u32,
         (format, sampling): How,
     ) -> Candidate {
-        let usual = TOLERANCE * f64::from(depth_tolerance(size));
-        let (room, gap_share) = self.gaps(axis, size, (format, sampling));
-        let (method, tolerance) = match room {
-            room if room >= usual => (Method::Hybrid, usual),
-            room if room >= usual * EXACT_BELOW => (Method::Hybrid, room),
-            _ => (Method::Exact, 0.0),
-        };
+        let gap_share = self.gaps(axis, size, (format, sampling));
         let edge_share = self.edge_size(axis) / f64::from(size);
         let maps = u64::from(axis.maps);
         Candidate {
             axis: index,
             size,
             format,
-            method,
-            tolerance: tolerance as f32,
             sampling,
-            generation: generation(self.rates, &axis.loads, self.sorted, size),
+            generation: EXACT * generation(self.rates, &axis.loads, self.sorted, size),
             lookup: self.pixels as f64
                 * match sampling {
                     Sampling::Nearest => self.rates.hard,
@@ -185,9 +162,8 @@ impl Case<'_> {
         }
     }
 
-    /// The relative error of distances that the gaps leave for the method, and the error as a
-    /// share of the target where exact maps forgive a gap that must hold.
-    fn gaps(&self, axis: &Axis, size: u32, (format, sampling): How) -> (f64, f64) {
+    /// The error as a share of the target where a lookup forgives a gap that must hold.
+    fn gaps(&self, axis: &Axis, size: u32, (format, sampling): How) -> f64 {
         let light = self.light(size);
         let range = light.far - light.near;
         let quantum = f64::from(format.quantum());
@@ -199,7 +175,7 @@ impl Case<'_> {
             // what is stored may be the neighbour above
             let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range + lean;
             match sampling {
-                Sampling::Nearest => sample.gap_within(reach() * pitch) - slack,
+                Sampling::Nearest => sample.gap_within(REACH * pitch) - slack,
                 // the receiver's own distance less the bias is compared
                 Sampling::Linear => {
                     let bias = BIASES * range * footprint(sample, cosine, &light);
@@ -207,15 +183,9 @@ impl Case<'_> {
                 }
             }
         };
-        let (mut room, mut share) = (f64::INFINITY, 0.0_f64);
-        for sample in self.samples.iter().filter(|sample| sample.gap[0].is_finite()) {
-            let left = left(sample);
-            if left <= 0.0 {
-                share = share.max(sample.edge / sample.allowed);
-            }
-            room = room.min(left / (2.0 * sample.distance));
-        }
-        (room, share)
+        let held = self.samples.iter().filter(|sample| sample.gap[0].is_finite());
+        let forgiven = held.filter(|sample| left(sample) <= 0.0);
+        forgiven.map(|sample| sample.edge / sample.allowed).fold(0.0, f64::max)
     }
 
     /// A light with maps of a size, as the biases need it.

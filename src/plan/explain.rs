@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::casters::Reason;
-use super::choose::{Candidate, Case, reach};
+use super::choose::{Candidate, Case, REACH};
 use super::{LeftOut, Plan, Request, VERSION};
-use crate::render::{Format, Method, Settings};
+use crate::render::Format;
 use crate::scalar::maps::Sampling;
 
 /// One choice.
@@ -23,15 +23,14 @@ pub struct Choice {
     pub error: Option<f64>,
 }
 
-/// The names of the choice's format, method and filter, as on the command line.
-pub fn names(best: &Candidate) -> [&'static str; 3] {
+/// The names of the choice's format and filter, as on the command line.
+fn names(best: &Candidate) -> [&'static str; 2] {
     [
         match best.format {
             Format::D16 => "d16",
             Format::D24 => "d24",
             Format::D32 => "d32",
         },
-        if best.method == Method::Exact { "exact" } else { "hybrid" },
         if best.sampling == Sampling::Linear { "hardware" } else { "hard" },
     ]
 }
@@ -46,7 +45,7 @@ pub fn explained(
     left_out: &[Option<Reason>],
 ) -> Plan {
     let axis = &axes[best.axis];
-    let [format, method, filter] = names(best);
+    let [format, filter] = names(best);
     let left_out_meshes = left_out.iter().zip(&request.scene.meshes).enumerate();
     let left_out_meshes = left_out_meshes
         .filter(|(_, (reason, _))| reason.is_some())
@@ -63,9 +62,7 @@ pub fn explained(
         hemispheres: axis.maps,
         size: best.size,
         format: format.into(),
-        method: method.into(),
-        tau: Settings::default().tau,
-        depth_tolerance: best.tolerance,
+        method: "exact".into(),
         filter: filter.into(),
         near: case.spheres[0],
         far: case.spheres[1],
@@ -82,7 +79,6 @@ pub fn explained(
         why,
         error,
     };
-    let reach = reach();
     let edge_size = case.edge_size(axis);
     let edges = edge_size / f64::from(best.size);
     plan.choices = vec![
@@ -94,13 +90,20 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup is off by up to {reach:.3} texel; the shadow edges that show ask for {:.0}",
+                "a lookup is off by up to {REACH:.3} texel; the shadow edges that show ask for {:.0}",
                 edge_size
             ),
             Some(error(edges)),
         ),
         format_line(case, candidates, best),
-        method_line(best, error(edges * f64::from(Settings::default().tau) / reach)),
+        line(
+            "method",
+            "exact".into(),
+            "for every mesh that is kept: hybrid maps forgive gaps thinner than their tolerance of \
+             distances, and cost nearly as much"
+                .into(),
+            None,
+        ),
         filter_line(candidates, best),
         line(
             "whole",
@@ -223,22 +226,6 @@ fn format_line(case: &Case<'_>, candidates: &[Candidate], best: &Candidate) -> C
     }
     why += "; d24 takes the memory of d32";
     Choice { what: "format".into(), value: names(best)[0].into(), why, error: None }
-}
-
-fn method_line(best: &Candidate, error: f64) -> Choice {
-    let (why, error) = match best.method {
-        Method::Exact => ("the gaps that must hold leave nothing for flat triangles".into(), None),
-        _ => (
-            format!(
-                "for every mesh that is kept; flat triangles where edges stay within {} texel and \
-                 distances within {:.1e}, which the gaps that must hold allow",
-                Settings::default().tau,
-                best.tolerance
-            ),
-            Some(error),
-        ),
-    };
-    Choice { what: "method".into(), value: names(best)[1].into(), why, error }
 }
 
 fn filter_line(candidates: &[Candidate], best: &Candidate) -> Choice {

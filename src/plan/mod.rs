@@ -127,12 +127,8 @@ pub struct Plan {
     pub size: u32,
     /// d16 or d32.
     pub format: String,
-    /// hybrid or exact.
+    /// The method of all meshes that are kept: exact.
     pub method: String,
-    /// Hybrid: how far an edge may be drawn from its place, in texels.
-    pub tau: f32,
-    /// Hybrid: how far a stored distance may be off, relative.
-    pub depth_tolerance: f32,
     /// hard or hardware.
     pub filter: String,
     /// Near sphere's radius.
@@ -173,7 +169,7 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let sorted = seen.iter().map(Vec::len).max().unwrap_or(0);
     let [width, height] = request.image.map(u64::from);
     let plain = |axis: &Axis| {
-        let size = choose::ladder(axis.demand * choose::reach());
+        let size = choose::ladder(axis.demand * choose::REACH);
         cost::generation(&request.rates, &axis.loads, sorted, size)
     };
     let judge = Judge { samples: &samples, seen: &seen, cost: &plain };
@@ -228,7 +224,6 @@ impl Plan {
             other => return Err(unknown("filter", other)),
         };
         let method = match self.method.as_str() {
-            "hybrid" => Method::Hybrid,
             "exact" => Method::Exact,
             other => return Err(unknown("method", other)),
         };
@@ -247,8 +242,6 @@ impl Plan {
                 other => return Err(unknown("format", other)),
             },
             method,
-            tau: self.tau,
-            depth_tolerance: Some(self.depth_tolerance),
             filter: Filter::Single,
             sampling,
             bias,
@@ -325,10 +318,11 @@ fn frames(
     });
     let casting = |reason: &Option<casters::Reason>| match reason {
         Some(_) => Casting::LeftOut,
-        None => Casting::By(Method::Hybrid),
+        None => Casting::By(Method::Exact),
     };
     let casting = left_out.iter().map(casting).collect();
-    let settings = Settings { image: request.image, casting, ..Settings::default() };
+    let method = Method::Exact;
+    let settings = Settings { image: request.image, method, casting, ..Settings::default() };
     let frame = |&light: &Vec3| {
         let axis = request.axis.unwrap_or(DOWN);
         let hemispherical = request.axis.is_some();

