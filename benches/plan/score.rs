@@ -17,8 +17,12 @@ use glam::{DVec3, Vec3};
 
 use super::place::{Place, position};
 
-/// Lights of each scene.
+/// Lights of each scene, where LIGHTS does not say how many.
 const POSES: usize = 20;
+
+fn poses() -> usize {
+    std::env::var("LIGHTS").ok().and_then(|text| text.parse().ok()).unwrap_or(POSES)
+}
 
 /// Points that a setting must light rightly, and 64 more around each beside an edge.
 const POINTS: usize = 10_000;
@@ -54,7 +58,7 @@ struct Setting {
 pub fn score(names: &[String]) -> Result<(), Failed> {
     let device = Device::open()?;
     println!("adapter: {}", device.describe());
-    println!("{POSES} lights a scene, {POINTS} points, targets {} in turn", TARGETS.join(", "));
+    println!("{} lights a scene, {POINTS} points, targets {} in turn", poses(), TARGETS.join(", "));
     let places: Vec<Place> =
         scene::BUILT_IN.iter().map(|(name, _)| Place::built_in(name, 8)).collect();
     println!(
@@ -118,7 +122,7 @@ fn of_scene(device: &Device, place: &Place) -> Result<Vec<Score>, Failed> {
     let truth = truth_of(&probe);
     let own = place.scene.default_light().axis;
     let mut scores = Vec::new();
-    for number in 0..POSES {
+    for number in 0..poses() {
         let light = position(place, &truth, &mut rng);
         let target: Target = TARGETS[number % TARGETS.len()].parse()?;
         let camera = place.scene.camera.unwrap_or_else(|| place.scene.default_camera(light));
@@ -197,7 +201,7 @@ impl Pose<'_> {
             self.sweep(&combination, &proof, truth, &mut best, &mut tried)?;
         }
         let found = best.0.is_finite();
-        let timed = match found && number % TIMED == 0 {
+        let timed = match found && number.is_multiple_of(TIMED) {
             true => Some(self.time(&planned, &best.1)?),
             false => None,
         };
