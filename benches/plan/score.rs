@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use dpsm::gpu::{self, Device, MeshBuffers, Parts, ShadowMaps};
-use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
+use dpsm::measure::{Bench, truth_of, truth_of_casters};
 use dpsm::plan::choose::{LEAST_SIZE, ladder, ladder_below};
 use dpsm::plan::cost::{self, EXACT, Rates, Seen};
 use dpsm::plan::{Plan, Proof, Request, Sight, Target, plan, shows};
@@ -182,14 +182,11 @@ impl Pose<'_> {
         let mut points = Bench::new(&frame, &empty, truth).points_from_camera(POINTS, 99);
         let eye = self.camera.eye.as_dvec3();
         points.retain(|point| shows(point, self.light.as_dvec3(), eye));
-        if let Some(axis) = self.axis {
-            let front = |point: &Point| (point.world - self.light.as_dvec3()).dot(axis.as_dvec3());
-            points.retain(|point| front(point) >= 0.0);
-        }
+        let axis = self.axis.map(|axis| axis.as_dvec3());
         let casters = truth_of_casters(&frame);
         let origin = self.light.as_dvec3();
         let sights = [truth, &casters].map(|truth| Sight { truth, origin });
-        let proof = Proof::beside_edges(sights, target, points, Some(eye), 99);
+        let proof = Proof::beside_edges(sights, target, points, Some(eye), axis, 99);
         let maps = gpu::make_maps(self.device, &frame)?;
         let wrong = proof.wrong(&Bench::new(&frame, &maps, truth));
         let met = wrong.share <= 1.0;

@@ -72,12 +72,14 @@ impl<'a> Proof<'a> {
 
     /// As `new`, with more points beside shadow edges, where a map can be wrong: on the triangles
     /// of those points that are beside one, as far from it as the target allows. `eye` must see
-    /// them; without one they only need to lie on the triangle.
+    /// them; without one they only need to lie on the triangle. What lies behind a hemispherical
+    /// light's `axis` is dark by definition and left out.
     pub fn beside_edges(
         sights: [Sight<'a>; 2],
         target: Target,
         mut points: Vec<Point>,
         eye: Option<DVec3>,
+        axis: Option<DVec3>,
         seed: u64,
     ) -> Self {
         let (azimuths, rings) = BESIDE;
@@ -99,6 +101,8 @@ impl<'a> Proof<'a> {
         let numbered: Vec<(u64, &Point)> = (seed..).zip(&points).collect();
         let more: Vec<Vec<Point>> = numbered.into_par_iter().map(around).collect();
         points.extend(more.into_iter().flatten());
+        let front = |p: &Point| axis.is_none_or(|axis| (p.world - sight.origin).dot(axis) >= 0.0);
+        points.retain(front);
         Self::new(sights, target, points)
     }
 

@@ -161,8 +161,9 @@ fn proof(scene: &Scene, light: Vec3, request: &Request<'_>, plan: &Plan) -> Wron
     assert!(plan.meets, "{}", plan.explanation());
     let camera = scene.camera.unwrap();
     let settings = plan.settings(&Settings::default()).unwrap();
-    let axis = Vec3::from_array(plan.axis);
-    let frame = Frame::new(scene, light, axis, plan.is_hemispherical(), &camera, settings).unwrap();
+    let forward = Vec3::from_array(plan.axis);
+    let frame =
+        Frame::new(scene, light, forward, plan.is_hemispherical(), &camera, settings).unwrap();
     let truth = truth_of(&frame);
     let casters = truth_of_casters(&frame);
     let sights = [&truth, &casters].map(|truth| Sight { truth, origin: light.as_dvec3() });
@@ -170,10 +171,8 @@ fn proof(scene: &Scene, light: Vec3, request: &Request<'_>, plan: &Plan) -> Wron
     let mut points = Bench::new(&frame, &empty, &truth).points_from_camera(6_000, 17);
     let eye = camera.eye.as_dvec3();
     points.retain(|point| shows(point, light.as_dvec3(), eye));
-    if let Some(axis) = request.axis {
-        points.retain(|p| (p.world - light.as_dvec3()).dot(axis.as_dvec3()) >= 0.0);
-    }
-    let proof = Proof::beside_edges(sights, request.error, points, Some(eye), 18);
+    let axis = request.axis.map(|axis| axis.as_dvec3());
+    let proof = Proof::beside_edges(sights, request.error, points, Some(eye), axis, 18);
     let maps = cpu::make_maps(&frame).unwrap();
     let bench = Bench::new(&frame, &maps, &truth);
     let wrong = proof.wrong(&bench);
