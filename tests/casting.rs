@@ -23,6 +23,7 @@ const CAMERA: Camera =
 /// Castings that are dealt out to a scene's meshes in turn.
 const VERTEX_AND_HYBRID: &[Casting] = &[By(Method::Vertex), By(Method::Hybrid), LeftOut];
 const HYBRID_AND_VERTEX: &[Casting] = &[By(Method::Hybrid), By(Method::Vertex)];
+const EXACT_AND_HYBRID: &[Casting] = &[By(Method::Exact), By(Method::Hybrid)];
 const EVERYTHING: &[Casting] = &[
     By(Method::Tessellated),
     By(Method::Exact),
@@ -160,7 +161,7 @@ fn meshes_of_a_method_are_few_ranges_and_masked_ones_still_last() {
 fn mixed_castings_are_the_nearest_of_each_methods_own_maps() {
     let device = device();
     for scene in built_in() {
-        for castings in [VERTEX_AND_HYBRID, HYBRID_AND_VERTEX, EVERYTHING] {
+        for castings in [VERTEX_AND_HYBRID, HYBRID_AND_VERTEX, EXACT_AND_HYBRID, EVERYTHING] {
             let what = format!("{}, {castings:?}", scene.name);
             let mixed = by_ports(&cast(&scene, castings, settings()));
             let apart = nearest(&scene, castings, &settings(), by_ports);

@@ -378,11 +378,8 @@ fn wall_pushed_back_by_two_thousandths_is_faults_all_over() {
     };
     let (stored, frame) = (made(1.0), made(1.002));
     // the spheres of the frame that is measured, and of the maps, must be the same
-    let spheres = Settings {
-        near: Some(frame.light.near),
-        far: Some(frame.light.far),
-        ..frame.settings.clone()
-    };
+    let spheres =
+        Settings { near: Some(frame.light.near), far: Some(frame.light.far), ..settings() };
     let stored = Frame { settings: spheres, light: frame.light, ..stored };
     let maps = exact_maps(&stored, &truth_of(&stored));
     let truth = truth_of(&frame);
