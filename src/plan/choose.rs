@@ -1,4 +1,4 @@
-//! The cheapest size, format, method and filter that an axis allows.
+//! The sizes, formats and filters that an axis allows, with their costs and errors.
 
 use super::Sample;
 use super::axis::Axis;
