@@ -39,7 +39,7 @@ impl Parts {
         std::fs::create_dir_all(&parts).map_err(|source| CliError::Write {
             path: folder.into(),
             source,
-            remedy: "-o",
+            remedy: "--folder",
         })?;
         let machine = report::machine(device);
         let common = format!("{}; {}; {effort:?}", program(), machine.computed_by);
@@ -94,7 +94,7 @@ impl Parts {
     /// Writes a part that is finished, if there is one, and the report on all that are: each file
     /// is whole at any time.
     pub fn write(&mut self, finished: Option<(usize, Part)>) -> Result<(), CliError> {
-        let mut outputs = Outputs::for_option("-o");
+        let mut outputs = Outputs::for_option("--folder");
         if let Some((place, part)) = finished
             && let Some(wanted) = self.parts.get_mut(place)
         {

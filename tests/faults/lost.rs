@@ -7,7 +7,7 @@ use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Options};
 use glam::Vec3;
 
-use crate::support::{BAKE, EVAL, MEASURE, PROBE, RENDER, Writes, adapter};
+use crate::support::{BAKE, EVAL, MEASURE, PROBE, RENDER, Writes, adapter, contents};
 
 /// A small frame with a view of each map.
 pub fn frame(method: Method) -> Frame {
@@ -48,12 +48,26 @@ fn device_lost_at_any_submission_or_wait_leaves_every_file_as_it_was() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn default_job_that_is_lost_leaves_no_folder() {
+fn default_job_that_is_lost_leaves_what_is_finished_whole() {
     let Some(_alone) = adapter() else { return };
     let job = Writes { name: "job", arguments: &[], files: &[] };
-    // in the first scene, and in the second: each submits its passes 12 times
+    // in the first scene, before anything of it is finished
     for fault in ["vkQueueSubmit 1 lost", "vkQueueSubmit 18 lost"] {
-        assert!(job.fails_at("job", fault, &["the adapter was lost in "]), "{fault}");
+        let folder = job.folder("job");
+        let run = job.struck(&folder, "gpu", fault, &[]);
+        run.failed(fault, 1, "--adapter cpu");
+        assert!(run.stderr.contains("the adapter was lost in "), "{fault}: {}", run.stderr);
+        let left = folder.join("dpsm-report");
+        let files = contents(&left).into_iter().filter(|(path, _)| path.is_file());
+        let mut names: Vec<_> = files.map(|(path, _)| path).collect();
+        names.sort();
+        let whole = ["report.csv", "report.html", "report.json"].map(|name| left.join(name));
+        assert_eq!(names, whole, "{fault}: nothing that is half finished is left");
+        let json = std::fs::read_to_string(left.join("report.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(report["unfinished"][0], "brabec-room", "{fault}");
+        let page = std::fs::read_to_string(left.join("report.html")).unwrap();
+        assert!(page.trim_end().ends_with("</html>"), "{fault}");
     }
 }
 
