@@ -823,7 +823,7 @@ MUTATIONS = [
      "faults", "outputs::disk_that_is_full_leaves_every_file_as_it_was"),
     ("src/cli/error.rs", "Kind::FileTooLarge => 1,", "Kind::FileTooLarge => 2,",
      "faults", "outputs::disk_that_is_full_leaves_every_file_as_it_was"),
-    ("src/cli/render.rs", 'let mut outputs = Outputs::for_option("--folder");', 'let mut outputs = Outputs::for_option("--folder");\n    let _ = std::fs::create_dir_all(folder);',
+    ("src/cli/parts.rs", "pretty(&report)?.into()", "pretty(&report)?[..99].into()",
      "faults", "lost::default_job_that_is_lost_leaves_what_is_finished_whole"),
     ("src/scene/load/named.rs", "match fs::metadata(path)?.is_file() {", "match fs::metadata(path)?.is_dir() {",
      "scene", "named_files::devices_and_folders_that_a_file_names_are_refused"),
