@@ -1176,6 +1176,8 @@ MUTATIONS = [
      "plan", "choices::targets_are_angles"),
     ("src/plan/score.rs", "(edge(self.sight).min(edge(self.casters)) / allowed)", "(edge(self.sight) / allowed)",
      "plan", "edges::planned_maps_keep_shadow_edges_within_the_target"),
+    ("src/plan/sight.rs", "edge: edge.min(rings[1]),", "edge,",
+     "plan", "choices::a_gap_that_no_map_holds_is_said_and_the_plan_still_reads_back"),
     # mistakes in the modules alone
     ("wgsl/paraboloid.wesl", "max(length(p) + abs(p.z), DPSM_SMALLEST)", "max(length(p) + p.z, DPSM_SMALLEST)",
      "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_project_own"),

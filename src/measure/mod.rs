@@ -14,6 +14,7 @@ pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straig
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
+pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
 
 use fastrand::Rng;

@@ -118,14 +118,26 @@ fn edge_distance(bench: &Bench<'_>, point: &Point) -> Option<f64> {
         let step = Vec2::new(azimuth.cos(), azimuth.sin()) * (texels * bench.texel());
         bench.reaches(point, uv + step, hemisphere).is_some_and(|reaches| reaches != sees)
     };
+    nearest_change(&RINGS, AZIMUTHS, HALVINGS, differs)
+}
+
+/// How far away something differs that is asked by azimuth and distance: on the first of some
+/// ascending rings where it does on any of so many azimuths, the nearest place, found to a ring's gap
+/// halved so often. `None` beyond the widest ring.
+pub(crate) fn nearest_change(
+    rings: &[f64],
+    azimuths: u32,
+    halvings: u32,
+    differs: impl Fn(f64, f64) -> bool,
+) -> Option<f64> {
     let mut inner = 0.0;
-    for outer in RINGS {
-        let nearest = (0..AZIMUTHS)
-            .map(|k| TAU * f64::from(k) / f64::from(AZIMUTHS))
+    for &outer in rings {
+        let nearest = (0..azimuths)
+            .map(|k| TAU * f64::from(k) / f64::from(azimuths))
             .filter(|&azimuth| differs(azimuth, outer))
             .map(|azimuth| {
                 let (mut same, mut other) = (inner, outer);
-                for _ in 0..HALVINGS {
+                for _ in 0..halvings {
                     let middle = 0.5 * (same + other);
                     match differs(azimuth, middle) {
                         true => other = middle,

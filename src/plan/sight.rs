@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Target;
-use crate::measure::Point;
+use crate::measure::{Point, nearest_change};
 use crate::truth::{Ray, Truth};
 
 /// A light among a scene's triangles.
@@ -52,7 +52,7 @@ pub struct Sample {
     /// The angle by which a map may miss the point's direction without lighting it wrongly beyond
     /// the target: `allowed` beside a shadow edge, more where none is near.
     pub room: f64,
-    /// The angle to the nearest shadow edge; infinite where none is near.
+    /// The angle to the nearest shadow edge, at most that of the widest ring.
     pub edge: f64,
     /// Distance from the plane to what shadows it: at the point, and the least around it at the
     /// allowed angle. Infinite for a lit point, and where an edge is so near that the target
@@ -121,7 +121,7 @@ impl Sight<'_> {
             normal: point.normal.unwrap_or_default(),
             allowed,
             room: if edge.is_finite() { allowed } else { rings[1] },
-            edge,
+            edge: edge.min(rings[1]),
             gap,
             behind,
         })
@@ -138,29 +138,7 @@ impl Sight<'_> {
                 Along::Dark { .. } => lit,
                 Along::Beyond => ends == Ends::Count,
             };
-        let mut inner = 0.0;
-        for &outer in rings {
-            let found = (0..azimuths)
-                .map(|k| TAU * f64::from(k) / f64::from(azimuths))
-                .filter(|&azimuth| differs(azimuth, outer))
-                .map(|azimuth| {
-                    let (mut same, mut other) = (inner, outer);
-                    for _ in 0..HALVINGS {
-                        let middle = 0.5 * (same + other);
-                        match differs(azimuth, middle) {
-                            true => other = middle,
-                            false => same = middle,
-                        }
-                    }
-                    other
-                })
-                .min_by(f64::total_cmp);
-            if let Some(found) = found {
-                return found;
-            }
-            inner = outer;
-        }
-        f64::INFINITY
+        nearest_change(rings, azimuths, HALVINGS, differs).unwrap_or(f64::INFINITY)
     }
 
     /// The angle from a point to the first change of its plane's light on the way to a direction;

@@ -89,6 +89,19 @@ fn thin_gaps_forbid_coarse_formats() {
 }
 
 #[test]
+fn a_gap_that_no_map_holds_is_said_and_the_plan_still_reads_back() {
+    let mut scene = floor_and_board(None);
+    for position in &mut scene.meshes[1].positions {
+        // more than what stands on the floor, less than what f32 rounds away
+        position.y = 8e-6;
+    }
+    let plan = plan(&Request::new(&scene, target("0.5deg"))).unwrap();
+    assert!(!plan.meets && plan.predicted.value() > 0.5, "{}", plan.explanation());
+    let read: Plan = serde_json::from_str(&serde_json::to_string(&plan).unwrap()).unwrap();
+    assert_eq!(read, plan);
+}
+
+#[test]
 fn every_choice_has_its_line_and_the_whole_is_the_largest() {
     let plan = planned(&built_in("brabec-room"), "0.2deg");
     let whats: Vec<&str> = plan.choices.iter().map(|choice| choice.what.as_str()).collect();
