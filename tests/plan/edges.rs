@@ -128,6 +128,19 @@ fn principal_axes_are_orthonormal_and_lead_along_the_receivers() {
 }
 
 #[test]
+fn a_local_search_finds_an_axis_between_the_named_ones() {
+    // what must be fine lies along one direction, so the best axis is any across it
+    let samples = [sample(dvec3(0.6, 0.48, 0.64), 0.01)];
+    let judge = Judge { samples: &samples, seen: &[], cost: &|axis| axis.demand };
+    let named = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
+    let found = judge.best(&named.map(|(name, axis)| (name.to_string(), axis)), 2);
+    let searched = found.last().unwrap();
+    // 2 (1 + cos) / room: the last step leaves less than itself of the angle
+    assert!(searched.demand <= 200.0 * (1.0 + 0.02), "{searched:?}");
+    assert!(found[..3].iter().all(|axis| axis.demand > 200.0 * 1.4), "{found:?}");
+}
+
+#[test]
 fn a_closed_room_fills_both_maps() {
     // the walls alone: the solids inside cover them
     let mut scene = open("seam-box", &Options { walls: 64 }).unwrap();
