@@ -1175,7 +1175,7 @@ MUTATIONS = [
     ("src/plan/target.rs", "let angle = match self {\n            Self::Texels(texels) => texels * texel(),", "let angle = match self {\n            Self::Texels(texels) => 2.0 * texels * texel(),",
      "plan", "choices::targets_are_angles"),
     ("src/plan/score.rs", "(edge(self.sight).min(edge(self.casters)) / allowed)", "(edge(self.sight) / allowed)",
-     "plan", "edges::planned_maps_keep_shadow_edges_within_the_target"),
+     "plan", "edges::a_shadow_edge_behind_a_wall_that_no_map_holds_counts"),
     ("src/plan/sight.rs", "edge: edge.min(rings[1]),", "edge,",
      "plan", "choices::a_gap_that_no_map_holds_is_said_and_the_plan_still_reads_back"),
     # mistakes in the modules alone
