@@ -234,6 +234,13 @@ MUTATIONS = [
      "cube_maps", "sources_of_a_cube_stay_within_their_bounds_and_leave_disks_out"),
     ("src/render.rs", "Method::Cube && settings.lookup == Lookup::Vertex {", "Method::Cube && settings.size == 0 {",
      "cube_maps", "what_a_cube_does_not_have_is_refused"),
+    # rough scenes
+    ("src/scene/procedural/rough.rs", "const HILL_CELLS: u32 = 320;", "const HILL_CELLS: u32 = 200;",
+     "scene", "built_in::triangles_of_rough_scenes_are_smaller_than_texels"),
+    ("src/scene/procedural/rough.rs", "const BOULDER: [f32; 2] = [0.8, 0.7];", "const BOULDER: [f32; 2] = [0.8, 1.2];",
+     "scene", "built_in::boulder_is_a_solid_that_reaches_into_the_ground"),
+    ("src/scene/shapes.rs", "+= (b - a).cross(c - a);", "-= (b - a).cross(c - a);",
+     "scene", "built_in::normals_are_unit_and_agree_with_the_winding"),
     # the measures
     ("src/measure/map.rs", "hit: bench.first_distance(uv, layer)", "hit: bench.first_distance(uv, 1 - layer)",
      "measure", "exact_maps_have_no_map_error"),

@@ -150,7 +150,7 @@ impl Scene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
     /// Each wall, floor and ceiling of a built-in scene is a grid of `walls` x `walls` quads:
-    /// 1 to [`Options::MAX_WALLS`], 8 in Brabec's paper and by default. Files ignore it.
+    /// 1 to [`Options::MAX_WALLS`], 8 in Brabec's paper and by default. Files and `hills` ignore it.
     pub walls: u32,
 }
 

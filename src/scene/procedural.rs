@@ -4,6 +4,7 @@ mod contact;
 mod crowd;
 mod fence;
 mod room;
+mod rough;
 
 use glam::{Vec3, vec3};
 
@@ -13,7 +14,7 @@ use super::{Camera, Light, Mesh, Options, Scene, SceneError};
 pub use crowd::{crowd, dozen};
 
 /// Name and one line about each scene that [`open`](super::open) builds.
-pub const BUILT_IN: [(&str, &str); 11] = [
+pub const BUILT_IN: [(&str, &str); 13] = [
     (
         "brabec-room",
         "closed room with solids, omnidirectional light in its middle (Brabec 2002, figure 3)",
@@ -34,6 +35,11 @@ pub const BUILT_IN: [(&str, &str); 11] = [
     ("gaps", "closed room, boards that hover 1 mm to 10 cm over the floor"),
     ("contact", "closed room, boxes 1 cm to 2.5 m high that touch the floor"),
     ("seam-edge", "closed room, boxes with edges in the plane between the hemispheres"),
+    ("hills", "rough height field of triangles smaller than a texel, light above and beside it"),
+    (
+        "boulder",
+        "rough closed mesh of 80,688 small triangles on the ground, light diagonally above",
+    ),
 ];
 
 /// `name` is one of [`BUILT_IN`].
@@ -48,6 +54,11 @@ pub(super) fn build(name: &str, walls: u32) -> Result<Scene, SceneError> {
             let under_ceiling = middle.with_y(room::MAX.y - 0.1);
             let axis = Some(Vec3::NEG_Y);
             scene(name, room::solids(walls), under_ceiling, axis, room::camera())
+        }
+        "hills" => lit(name, rough::hills(), rough::hills_light(), rough::hills_camera()),
+        "boulder" => {
+            let (light, camera) = (rough::boulder_light(), rough::boulder_camera());
+            lit(name, rough::boulder(walls), light, camera)
         }
         _ => {
             let meshes = match name {
@@ -73,10 +84,14 @@ fn scene(
     axis: Option<Vec3>,
     camera: Camera,
 ) -> Scene {
+    lit(name, meshes, Light { position, axis, color: Vec3::ONE }, camera)
+}
+
+fn lit(name: &str, meshes: Vec<Mesh>, light: Light, camera: Camera) -> Scene {
     Scene {
         name: name.into(),
         meshes,
-        lights: vec![Light { position, axis, color: Vec3::ONE }],
+        lights: vec![light],
         camera: Some(camera),
         warnings: Vec::new(),
     }

@@ -1,5 +1,6 @@
 //! The two shapes that the built-in scenes are made of: grids of quads and solids of revolution.
 
+use std::collections::HashMap;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{Quat, Vec2, Vec3, vec2, vec3};
@@ -135,6 +136,25 @@ impl Mesh {
             whole.normals.extend(part.normals);
         }
         whole
+    }
+
+    /// With the normals of a smooth surface: at each position the mean of the triangles around it,
+    /// weighted by area, whether they share the vertex or not.
+    pub(super) fn smoothed(mut self) -> Self {
+        // adding 0 makes -0 a 0
+        let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);
+        let mut sums: HashMap<[u32; 3], Vec3> = HashMap::with_capacity(self.positions.len());
+        for corners in &self.triangles {
+            let [a, b, c] = corners.map(|i| self.positions[i as usize]);
+            for corner in [a, b, c] {
+                *sums.entry(key(corner)).or_default() += (b - a).cross(c - a);
+            }
+        }
+        for (normal, position) in self.normals.iter_mut().zip(&self.positions) {
+            let sum = sums.get(&key(*position)).copied().unwrap_or_default();
+            *normal = sum.try_normalize().unwrap_or(*normal);
+        }
+        self
     }
 
     /// Rotates, then moves.

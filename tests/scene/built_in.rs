@@ -3,10 +3,12 @@
 use std::collections::BTreeSet;
 
 use dpsm::scene::{Mesh, Options, Scene, SceneError, crowd, dozen, open};
+use dpsm::truth::{Ray, Truth};
 use glam::{Vec2, Vec3};
 
 use crate::{
-    BUILT_IN, built_in, corners, enclosures, every_built_in, hit, is_wall, is_watertight, volume,
+    OPEN, built_in, corners, enclosures, every_built_in, every_room, hit, is_wall, is_watertight,
+    volume,
 };
 
 #[test]
@@ -15,7 +17,8 @@ fn walls_are_grids_of_as_many_quads_as_asked() {
         let walls = scene.meshes.iter().filter(|mesh| is_wall(mesh));
         walls.map(|mesh| mesh.triangles.len()).sum()
     };
-    for name in BUILT_IN.map(|(name, _)| name) {
+    for name in every_room().map(|scene| scene.name) {
+        let name = name.as_str();
         let sides = if name == "cornell" { 5 } else { 6 };
         let [coarse, fine] = [1, 8].map(|walls| built_in(name, walls));
         assert_eq!(count(&coarse), sides * 2, "{name}");
@@ -30,8 +33,8 @@ fn walls_are_grids_of_as_many_quads_as_asked() {
 #[test]
 fn closed_room_is_watertight_and_faces_inward() {
     for walls in [1, 3, 8] {
-        for name in BUILT_IN.map(|(name, _)| name).into_iter().filter(|name| *name != "cornell") {
-            let scene = built_in(name, walls);
+        for name in every_room().map(|scene| scene.name).filter(|name| name != "cornell") {
+            let scene = built_in(&name, walls);
             let room: Vec<&Mesh> = scene.meshes.iter().filter(|mesh| is_wall(mesh)).collect();
             assert_eq!(room.len(), 6);
             assert!(is_watertight(room.iter().copied()), "{name}, walls {walls}");
@@ -43,7 +46,7 @@ fn closed_room_is_watertight_and_faces_inward() {
 
 #[test]
 fn objects_are_watertight_solids_that_face_outward_and_keep_apart() {
-    for scene in every_built_in() {
+    for scene in every_room() {
         let is_solid = |mesh: &&Mesh| !is_wall(mesh) && mesh.mask.is_none();
         let objects: Vec<&Mesh> = scene.meshes.iter().filter(is_solid).collect();
         assert!(objects.len() >= 2);
@@ -81,7 +84,7 @@ fn normals_are_unit_and_agree_with_the_winding() {
 
 #[test]
 fn no_light_is_inside_or_near_an_object() {
-    for scene in every_built_in() {
+    for scene in every_room() {
         let light = scene.lights[0].position;
         assert!(scene.bounds().contains(light), "{}", scene.name);
         // the bars of the cage are 0.3 m away on purpose
@@ -117,7 +120,7 @@ fn lights_are_the_papers_and_both_hemispheres_see_casters() {
 
 #[test]
 fn built_in_cameras_show_floor_walls_objects_and_shadows() {
-    for scene in every_built_in() {
+    for scene in every_room() {
         let camera = scene.camera.unwrap();
         let light = scene.lights[0].position;
         let forward = (camera.target - camera.eye).normalize();
@@ -142,6 +145,78 @@ fn built_in_cameras_show_floor_walls_objects_and_shadows() {
         assert!(count("wall") >= 2, "{}: {seen:?}", scene.name);
         assert!(seen.len() >= 2 + 1 + 2, "{}: {seen:?}", scene.name);
         assert!(shadowed * 50 > SIDE * SIDE, "{}: {shadowed} pixels", scene.name);
+    }
+}
+
+/// The share of a scene's triangles that the light sees as smaller than the texel that holds them.
+fn smaller_than_texels(scene: &Scene, size: u32) -> f64 {
+    let light = scene.lights[0].position;
+    let (mut small, mut all) = (0.0, 0.0);
+    for [a, b, c] in scene.meshes.iter().filter(|mesh| mesh.name != "ground").flat_map(corners) {
+        let middle = (a + b + c) / 3.0 - light;
+        let direction = middle.normalize().as_dvec3();
+        let area = 0.5 * (b - a).cross(c - a).as_dvec3().dot(direction).abs();
+        let angle = area / f64::from(middle.length_squared());
+        // seen from a light whose axis points down
+        let square = (1.0 - direction.y.abs()) / (1.0 + direction.y.abs());
+        let pitch = 4.0 / (f64::from(size) * (1.0 + square));
+        small += f64::from(u8::from(angle < pitch * pitch));
+        all += 1.0;
+    }
+    small / all
+}
+
+#[test]
+fn triangles_of_rough_scenes_are_smaller_than_texels() {
+    for (name, count) in [("hills", 204_800), ("boulder", 80_688 + 2)] {
+        let scene = built_in(name, 1);
+        assert_eq!(scene.triangle_count(), count, "{name}");
+        assert_eq!(scene, built_in(name, 1), "the same each time");
+        // all but some on slopes that face the light
+        let small = smaller_than_texels(&scene, 1024);
+        println!("{name}: {small}");
+        assert!(small > 0.9, "{name}: {small}");
+    }
+}
+
+#[test]
+fn boulder_is_a_solid_that_reaches_into_the_ground() {
+    let scene = built_in("boulder", 8);
+    let [ground, boulder] = &scene.meshes[..] else { panic!("two meshes") };
+    assert!(is_watertight([boulder]) && volume([boulder]) > 0.0);
+    assert_eq!(ground.triangles.len(), 2 * 8 * 8);
+    assert!(ground.positions.iter().all(|p| p.y == 0.0));
+    let below = boulder.positions.iter().filter(|p| p.y < 0.0).count();
+    assert!(below > 0 && below * 5 < boulder.positions.len(), "{below} vertices");
+    // as far from the boulder's middle as the scene is wide
+    let away = scene.lights[0].position.distance(Vec3::Y * 0.7);
+    assert!((away - scene.bounds().extent().max_element()).abs() < 1e-5);
+}
+
+#[test]
+fn cameras_of_rough_scenes_show_light_and_shadow() {
+    for (name, shadowed) in [("hills", 0.1), ("boulder", 0.1)] {
+        assert!(OPEN.contains(&name));
+        let scene = built_in(name, 8);
+        let truth = Truth::from(&scene);
+        let (light, camera) = (scene.lights[0].position.as_dvec3(), scene.camera.unwrap());
+        let eye = camera.eye.as_dvec3();
+        let forward = (camera.target.as_dvec3() - eye).normalize();
+        let right = forward.cross(camera.up.as_dvec3()).normalize();
+        let half = f64::from(camera.vertical_fov / 2.0).tan();
+        const SIDE: usize = 64;
+        let (mut seen, mut dark) = (0.0, 0.0);
+        for pixel in 0..SIDE * SIDE {
+            let [x, y] = [pixel % SIDE, pixel / SIDE]
+                .map(|i| half * ((i as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0));
+            let ray = Ray::new(eye, forward + right * x + right.cross(forward) * y);
+            let Some(hit) = truth.first_hit(&ray) else { continue };
+            let point = truth.point(&hit).unwrap();
+            seen += 1.0;
+            dark += f64::from(u8::from(!truth.sees(light, point, Some(hit.triangle), 0.0)));
+        }
+        assert!(seen > 0.6 * (SIDE * SIDE) as f64, "{name}: {seen} pixels");
+        assert!(dark > shadowed * seen && dark < 0.6 * seen, "{name}: {dark} of {seen}");
     }
 }
 
@@ -258,7 +333,7 @@ fn crowd_has_as_many_triangles_as_asked_and_its_objects_keep_apart() {
 #[test]
 fn names_with_typing_errors_get_a_suggestion() {
     let message = |name| open(name, &Options::default()).unwrap_err().to_string();
-    let help = "(built in: brabec-room, brabec-ceiling, cornell, seam-box, cage, fence, crowd, grazing, gaps, contact, seam-edge; \
+    let help = "(built in: brabec-room, brabec-ceiling, cornell, seam-box, cage, fence, crowd, grazing, gaps, contact, seam-edge, hills, boulder; \
                 or give the path of a .obj, .gltf or .glb file)";
     for (typed, meant) in
         [("brabec-rom", "brabec-room"), ("brabec-c", "brabec-ceiling"), ("Cornel", "cornell")]

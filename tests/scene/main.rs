@@ -25,6 +25,13 @@ fn every_built_in() -> impl Iterator<Item = Scene> {
     BUILT_IN.into_iter().map(|(name, _)| built_in(name, 8))
 }
 
+/// Built-in scenes without walls.
+const OPEN: [&str; 2] = ["hills", "boulder"];
+
+fn every_room() -> impl Iterator<Item = Scene> {
+    every_built_in().filter(|scene| !OPEN.contains(&scene.name.as_str()))
+}
+
 fn is_wall(mesh: &Mesh) -> bool {
     ["wall", "floor", "ceiling"].iter().any(|part| mesh.name.contains(part))
 }
