@@ -1212,7 +1212,7 @@ FEATURES = {
     "formats": [], "hard_cases": [], "faults": [], "cli": [], "link": [], "native": [],
     "opinions": [], "judge": [], "parameterisations": [], "report": [], "report_page": [],
     "report_run": [], "point_tests": [],
-    "measure": SCENE, "frame": SCENE, "scene": SCENE, "truth": SCENE,
+    "measure": SCENE, "seen": SCENE, "frame": SCENE, "scene": SCENE, "truth": SCENE,
     "map_error": SCENE, "bias_scenes": SCENE, "cube_maps": SCENE, "plan": SCENE,
 }
 

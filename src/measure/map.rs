@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::Bench;
 use super::band::{Band, Part, larger};
-use super::silhouette::{Marks, Search};
+use super::silhouette::{JUMP, Marks, Search};
 use crate::scalar::float::Vec2;
 use crate::scalar::paraboloid::dpsm_texture_to_disk;
 
@@ -95,7 +95,7 @@ pub fn map_error(bench: &Bench<'_>, tau: f64, row_done: impl Fn() + Sync) -> Map
         rim.join(in_rim);
         centre.join(in_centre);
     }
-    let search = Search { bench, tau };
+    let search = Search { bench, tau, jump: JUMP };
     let marks = Marks::new(bench.maps.depths.len());
     rim.ask(&marks);
     centre.ask(&marks);

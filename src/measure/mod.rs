@@ -7,15 +7,19 @@ mod attribution;
 mod band;
 mod map;
 mod penumbra;
+mod seen;
 mod shadow;
 mod silhouette;
+mod surface;
 
 pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straight, left_out};
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
+pub use seen::{SeenError, seen_error};
 pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
+pub use surface::{Surroundings, surroundings};
 
 use fastrand::Rng;
 use glam::{DMat3, DVec3};
@@ -152,6 +156,13 @@ impl<'a> Bench<'a> {
     /// True where nothing between near and the point keeps the light from it.
     pub fn sees(&self, point: &Point) -> bool {
         self.occluder(point).is_none()
+    }
+
+    /// True where the light reaches a point: nothing keeps it away, and the light has a map there.
+    /// Behind a hemispherical light all is dark by definition.
+    pub fn is_lit(&self, point: &Point) -> bool {
+        let p = self.to_light(point.world).narrow();
+        self.projection.lookup(p, self.frame.light).mapped && self.sees(point)
     }
 
     /// True where a direction of the light reaches the plane of a receiver, or `None` where it

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -11,7 +12,10 @@ use crate::scalar::maps::Sampling;
 use crate::scalar::paraboloid::dpsm_texture_to_disk;
 
 /// Rays along a side of a footprint, its corners included.
-const FOOTPRINT_RAYS: i32 = 5;
+const FOOTPRINT_RAYS: u32 = 5;
+
+/// The most of them, for wide kernels.
+const MOST_RAYS: f64 = 17.0;
 
 /// Radii in texels at which the true shadow edge is looked for.
 const RINGS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
@@ -84,28 +88,64 @@ fn texel_place(bench: &Bench<'_>, [x, y]: [f64; 2]) -> Vec2<f64> {
     dpsm_texture_to_disk(Vec2::new(x, y) / bench.light.size, bench.light.guard)
 }
 
+/// The texels that a point's lookup reads.
+pub(super) struct Footprint {
+    /// The map, and the texel that holds the point.
+    map: u32,
+    texel: [f64; 2],
+    /// Texels read on each side of it.
+    reach: f64,
+}
+
+impl Footprint {
+    /// `None` where the light has no map.
+    pub(super) fn of(bench: &Bench<'_>, point: &Point) -> Option<Self> {
+        let p = bench.to_light(point.world).narrow();
+        let at = bench.projection.lookup(p, bench.frame.light);
+        let texel = |c: f32| (f64::from(c) * f64::from(bench.maps.size)).floor();
+        let own = match bench.maps.sampling {
+            Sampling::Nearest => 0.0,
+            Sampling::Linear => 1.0,
+        };
+        at.mapped.then(|| Self {
+            map: at.hemisphere,
+            texel: [at.coordinates.x, at.coordinates.y].map(texel),
+            reach: own + bench.kernel_texels(point).ceil(),
+        })
+    }
+
+    /// Texels along its side.
+    pub(super) fn width(&self) -> f64 {
+        1.0 + 2.0 * self.reach
+    }
+
+    /// Rays along its side, corners included: two a texel, within limits.
+    pub(super) fn rays(&self) -> usize {
+        (2.0 * self.width() + 1.0).clamp(f64::from(FOOTPRINT_RAYS), MOST_RAYS) as usize
+    }
+
+    /// The place of one of `rays` x `rays` that fill it, row by row, corners included.
+    fn place(&self, bench: &Bench<'_>, index: usize, rays: usize) -> Vec2<f64> {
+        let offset = |k: usize| k as f64 / (rays - 1) as f64 * self.width() - self.reach;
+        let [x, y] = self.texel;
+        texel_place(bench, [x + offset(index % rays), y + offset(index / rays)])
+    }
+
+    /// The same as a world direction.
+    pub(super) fn direction(&self, bench: &Bench<'_>, index: usize, rays: usize) -> DVec3 {
+        bench.direction(self.place(bench, index, rays), self.map)
+    }
+}
+
 /// True of an edge point: the rays over the texels that its lookup reads do not all agree, or miss
 /// the point's plane.
 pub fn edge_point(bench: &Bench<'_>, point: &Point) -> bool {
-    let p = bench.to_light(point.world).narrow();
-    let at = bench.projection.lookup(p, bench.frame.light);
-    if !at.mapped {
-        return false;
-    }
-    let texel = |c: f32| (f64::from(c) * f64::from(bench.maps.size)).floor();
-    let [x, y] = [at.coordinates.x, at.coordinates.y].map(texel);
-    let own = match bench.maps.sampling {
-        Sampling::Nearest => 0.0,
-        Sampling::Linear => 1.0,
-    };
-    let reach = own + bench.kernel_texels(point).ceil();
+    let Some(footprint) = Footprint::of(bench, point) else { return false };
     let sees = bench.sees(point);
-    let steps = f64::from(FOOTPRINT_RAYS - 1) / (1.0 + 2.0 * reach);
-    (0..FOOTPRINT_RAYS * FOOTPRINT_RAYS).any(|i| {
-        let offset = |k: i32| f64::from(k) / steps - reach;
-        let corner = [x + offset(i % FOOTPRINT_RAYS), y + offset(i / FOOTPRINT_RAYS)];
-        let uv = texel_place(bench, corner);
-        bench.reaches(point, uv, at.hemisphere).is_none_or(|reaches| reaches != sees)
+    let rays = FOOTPRINT_RAYS as usize;
+    (0..rays * rays).any(|i| {
+        let uv = footprint.place(bench, i, rays);
+        bench.reaches(point, uv, footprint.map).is_none_or(|reaches| reaches != sees)
     })
 }
 

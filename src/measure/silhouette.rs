@@ -65,16 +65,20 @@ impl Marks {
 
 /// A direction, its first hit, and the hit triangle's plane.
 #[derive(Clone, Copy)]
-struct Sample {
-    direction: DVec3,
+pub struct Sample {
+    /// Of unit length.
+    pub direction: DVec3,
     /// The hit and the triangle's normal, of any length.
-    hit: Option<(Hit, DVec3)>,
+    pub hit: Option<(Hit, DVec3)>,
 }
 
 /// The search for silhouettes through texels grown by `tau` texels on each side.
 pub struct Search<'b> {
     pub bench: &'b Bench<'b>,
+    /// What texels are grown by.
     pub tau: f64,
+    /// Smallest jump that counts, of the distance: [`JUMP`] where maps are judged.
+    pub jump: f64,
 }
 
 impl Search<'_> {
@@ -176,7 +180,8 @@ impl Search<'_> {
         false
     }
 
-    fn sample(&self, direction: DVec3) -> Sample {
+    /// The first hit along a unit direction.
+    pub fn sample(&self, direction: DVec3) -> Sample {
         let bench = self.bench;
         let hit = bench.first_hit(direction).map(|hit| (hit, bench.normal(hit.triangle)));
         Sample { direction, hit }
@@ -184,14 +189,15 @@ impl Search<'_> {
 
     /// True where the first hit's distance changes from one direction to the other without a jump,
     /// as far as rays tell.
-    fn is_joined(&self, a: &Sample, b: &Sample, halvings: i32) -> bool {
+    pub fn is_joined(&self, a: &Sample, b: &Sample, halvings: i32) -> bool {
         let (Some((hit_a, _)), Some((hit_b, _))) = (a.hit, b.hit) else {
             return a.hit.is_none() && b.hit.is_none();
         };
         // how far the two planes are apart at either end, of the distance there
         let at_a = (a.inverse(a.direction) - b.inverse(a.direction)) * hit_a.distance;
         let at_b = (a.inverse(b.direction) - b.inverse(b.direction)) * hit_b.distance;
-        if hit_a.triangle == hit_b.triangle || (at_a.abs() <= JUMP && at_b.abs() <= JUMP) {
+        if hit_a.triangle == hit_b.triangle || (at_a.abs() <= self.jump && at_b.abs() <= self.jump)
+        {
             return true;
         }
         if halvings <= 0 {

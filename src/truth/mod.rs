@@ -16,16 +16,19 @@
 //! assert!(!truth.sees(dvec3(1.0, 3.0, 1.0), dvec3(1.0, -1.0, 1.0), None, 0.0));
 //! ```
 
+mod adjacent;
 mod sheared;
 mod tree;
 
+use std::collections::HashSet;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::scene::{Mesh, Scene};
+use adjacent::Adjacent;
 use sheared::Sheared;
 use tree::Tree;
 
@@ -42,6 +45,8 @@ pub struct Truth {
     /// Of each triangle; of an unusable one, which nothing meets, NaN.
     corners: Vec<[DVec3; 3]>,
     tree: Tree,
+    /// Made when it is first asked for.
+    adjacent: OnceLock<Adjacent>,
     opacity: Opacity,
 }
 
@@ -110,7 +115,7 @@ impl Truth {
         let corners: Vec<_> = corners.map(|t| if usable(&t) { t } else { nothing }).collect();
         let hittable = (0..).zip(corners.iter().copied()).filter(|(_, triangle)| usable(triangle));
         let tree = Tree::new(&hittable.collect::<Vec<_>>());
-        Self { corners, tree, opacity: Opacity(None) }
+        Self { corners, tree, adjacent: OnceLock::new(), opacity: Opacity(None) }
     }
 
     /// The same triangles with holes: a ray meets a triangle only where `opaque` of its index and
@@ -184,6 +189,17 @@ impl Truth {
     /// plane than [`TOUCH`] allows.
     pub fn point(&self, hit: &Hit) -> Option<DVec3> {
         self.corners.get(hit.triangle as usize).map(|corners| weighted(*corners, hit.weights))
+    }
+
+    /// The triangle and all that are connected with it within a ball: reached over edges and corners
+    /// of which some point is within `radius` of `centre`. Corners at equal positions are one, whatever
+    /// mesh they belong to; holes do not matter.
+    pub fn connected(&self, triangle: u32, centre: DVec3, radius: f64) -> HashSet<u32> {
+        let adjacent = self.adjacent.get_or_init(|| Adjacent::new(&self.corners));
+        match (triangle as usize) < self.corners.len() {
+            true => adjacent.connected(&self.corners, triangle, centre, radius),
+            false => HashSet::new(),
+        }
     }
 
     fn search(&self, ray: &Ray, counts: impl Fn(&Hit) -> bool) -> Option<Hit> {

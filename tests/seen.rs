@@ -1,0 +1,233 @@
+//! What a person sees first: which points are smoothly lit or deep in shadow, and what is counted
+//! of them.
+
+#![cfg(feature = "scene")]
+
+#[path = "common/scenes.rs"]
+mod scenes;
+
+use dpsm::measure::*;
+use dpsm::render::{Filter, Frame, Kernel, Settings, Taps};
+use dpsm::scalar::maps::{DepthMaps, Sampling};
+use dpsm::scene::Mesh;
+use glam::{DVec3, Vec3, dvec3, vec3};
+use scenes::{SIZE, frame_of, half_covered, settings, square};
+
+/// What a texel at the map's centre is wide 2 below the light: 4 / N rad.
+const TEXEL: f64 = 2.0 * 4.0 / SIZE as f64;
+
+/// The surroundings of points in a frame whose maps are sampled somehow.
+fn all(frame: &Frame, sampling: Sampling, at: &[DVec3]) -> Vec<Surroundings> {
+    let (truth, maps) = (truth_of(frame), DepthMaps::empty(SIZE, 2, sampling));
+    let bench = Bench::new(frame, &maps, &truth);
+    let of = |at: &DVec3| {
+        let point = bench.point_at(*at, None);
+        surroundings(&bench, &point, bench.is_lit(&point))
+    };
+    at.iter().map(of).collect()
+}
+
+fn count(of: &[Surroundings], wanted: Surroundings) -> usize {
+    of.iter().filter(|found| **found == wanted).count()
+}
+
+fn mesh(name: &str, positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
+    let normals = vec![Vec3::Y; positions.len()];
+    Mesh { name: name.into(), positions, normals, triangles, ..Mesh::default() }
+}
+
+/// An upright wall of half-width 5 from y = -2 to y = 3 at x = `x`, across the z axis.
+fn wall(x: f32) -> Mesh {
+    let corners = [(-2.0, -5.0), (-2.0, 5.0), (3.0, 5.0), (3.0, -5.0)];
+    let positions = corners.map(|(y, z)| vec3(x, y, z)).to_vec();
+    mesh("wall", positions, vec![[0, 1, 2], [0, 2, 3]])
+}
+
+/// A grid of `cells` x `cells` around (0, -2, 0), `half` to each side, of this height.
+fn field(cells: u32, half: f32, height: impl Fn(f32, f32) -> f32) -> Mesh {
+    let place = |i: u32| half * (2.0 * i as f32 / cells as f32 - 1.0);
+    let row = cells + 1;
+    let positions = (0..row * row).map(|i| {
+        let [x, z] = [i % row, i / row].map(place);
+        vec3(x, -2.0 + height(x, z), z)
+    });
+    let cell = |i: u32| {
+        let [a, b] = [i / cells * row + i % cells, i / cells * row + i % cells + row];
+        [[a, b, b + 1], [a, b + 1, a + 1]]
+    };
+    mesh("field", positions.collect(), (0..cells * cells).flat_map(cell).collect())
+}
+
+/// A ball of so many rings at a place.
+fn ball(middle: Vec3, radius: f32, rings: u32) -> Mesh {
+    let segments = 2 * rings;
+    let at = |ring: u32, segment: u32| {
+        let [polar, around] =
+            [ring, segment].map(|k| std::f32::consts::PI * k as f32 / rings as f32);
+        middle + radius * vec3(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin())
+    };
+    let index = |ring: u32, segment: u32| ring * segments + segment % segments;
+    let positions = (0..=rings).flat_map(|r| (0..segments).map(move |s| (r, s)));
+    let cells = (0..rings).flat_map(|r| (0..segments).map(move |s| (r, s)));
+    let triangles = cells.flat_map(|(r, s)| {
+        let [a, b, c, d] =
+            [(r, s), (r, s + 1), (r + 1, s + 1), (r + 1, s)].map(|(r, s)| index(r, s));
+        [[a, b, c], [a, c, d]]
+    });
+    mesh("ball", positions.map(|(r, s)| at(r, s)).collect(), triangles.collect())
+}
+
+const BOTH: [Sampling; 2] = [Sampling::Nearest, Sampling::Linear];
+
+#[test]
+fn all_of_a_plane_is_smoothly_lit() {
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0)], settings());
+    let at: Vec<DVec3> = (0..200).map(|k| dvec3(0.031 * f64::from(k), -2.0, 0.7)).collect();
+    for sampling in BOTH {
+        assert_eq!(count(&all(&frame, sampling, &at), Surroundings::SmoothlyLit), at.len());
+    }
+}
+
+#[test]
+fn a_crease_of_two_meshes_that_touch_is_smoothly_lit() {
+    // the wall's foot lies within the floor's triangles: no corner in common
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), wall(1.5)], settings());
+    let floor = (0..60).map(|k| dvec3(1.5 - 0.05 * TEXEL * f64::from(k), -2.0, 0.3));
+    let wall = (0..60).map(|k| dvec3(1.5, -2.0 + 0.05 * TEXEL * f64::from(k), 0.3));
+    let at: Vec<DVec3> = floor.chain(wall).collect();
+    for sampling in BOTH {
+        assert_eq!(count(&all(&frame, sampling, &at), Surroundings::SmoothlyLit), at.len());
+    }
+}
+
+#[test]
+fn a_dense_ball_is_smoothly_lit_but_for_its_outline() {
+    // triangles of about a third of a texel
+    let middle = vec3(0.3, -2.0, 0.2);
+    let ball = ball(middle, 0.8, 128);
+    let frame = frame_of(vec![ball, square("floor", 0.0, -4.0, 3.0)], settings());
+    let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+    let bench = Bench::new(&frame, &maps, &truth);
+    let (mut inner, mut outline) = (0, 0);
+    for point in bench.points_scattered(20_000, 1) {
+        let from_middle = point.world - middle.as_dvec3();
+        if from_middle.length() > 0.9 || !bench.is_lit(&point) {
+            continue;
+        }
+        let cosine = from_middle.normalize().dot(-point.world.normalize());
+        let found = surroundings(&bench, &point, true);
+        if cosine > 0.6 {
+            inner += 1;
+            assert_eq!(found, Surroundings::SmoothlyLit, "{point:?}");
+        } else if cosine < 0.05 {
+            outline += 1;
+            assert_eq!(found, Surroundings::Mixed, "{point:?}");
+        }
+    }
+    assert!(inner > 100 && outline > 5, "{inner} and {outline} points");
+}
+
+#[test]
+fn nothing_is_smoothly_lit_or_deep_in_shadow_beside_an_outline() {
+    // the cover's shadow begins in a texel's middle, 0.4 texels from where the light is overhead
+    let cover = square("cover", 50.0 + 0.2 * TEXEL as f32, -1.0, 50.0);
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], settings());
+    for (sampling, texels) in [(Sampling::Nearest, 1.0), (Sampling::Linear, 2.0)] {
+        let cover = |x: f64| dvec3(x * 0.5 * TEXEL, -1.0, 0.3);
+        let floor = |x: f64| dvec3(x * TEXEL, -2.0, 0.3);
+        // under the cover, on the floor beside it, on the cover; texels end at whole numbers
+        let place = |x: f64| [floor(x), floor(1.0 - x), cover(x)];
+        let near = place(texels - 0.1).map(|at| all(&frame, sampling, &[at])[0]);
+        assert_eq!(near, [Surroundings::Mixed; 3], "{sampling:?}");
+        let far = place(texels + 0.1).map(|at| all(&frame, sampling, &[at])[0]);
+        let [shadow, lit] = [Surroundings::DeepInShadow, Surroundings::SmoothlyLit];
+        assert_eq!(far, [shadow, lit, lit], "{sampling:?}");
+    }
+}
+
+#[test]
+fn a_kernel_asks_for_as_much_around_it() {
+    // a kernel of 8 texels' radius
+    let kernel = Kernel::Tangent(8.0 * 4.0 / SIZE as f32);
+    let filter = Filter::Disk(Taps { count: 16, kernel });
+    let frame = half_covered(Settings { filter, ..settings() });
+    let at = [7.5, 9.5].map(|x| dvec3(x * TEXEL, -2.0, 0.3));
+    let found = all(&frame, Sampling::Nearest, &at);
+    assert_eq!(found, [Surroundings::Mixed, Surroundings::DeepInShadow]);
+}
+
+#[test]
+fn what_a_thin_gap_shadows_is_deep_in_shadow_and_a_small_fold_is_not() {
+    // a board a fiftieth of a texel above the floor
+    let board = square("board", 0.0, -2.0 + 0.02 * TEXEL as f32, 1.0);
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), board], settings());
+    let at: Vec<DVec3> = (0..50).map(|k| dvec3(0.017 * f64::from(k), -2.0, 0.3)).collect();
+    for sampling in BOTH {
+        assert_eq!(count(&all(&frame, sampling, &at), Surroundings::DeepInShadow), at.len());
+    }
+    // a dense surface in folds a third of a texel high: its shadows are within itself; in folds of
+    // six they are deep
+    for (height, waves, deep) in [(0.3, 60.0, 0.0..0.01), (6.0, 4.0, 0.3..0.95)] {
+        let fold = |x: f32, _| height * TEXEL as f32 * (waves * x).sin();
+        let frame = frame_of(vec![field(400, 3.0, fold)], settings());
+        let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+        let bench = Bench::new(&frame, &maps, &truth);
+        let points = bench.points_scattered(5_000, 1);
+        let dark = points.iter().filter(|point| !bench.is_lit(point));
+        let found: Vec<_> = dark.map(|point| surroundings(&bench, point, false)).collect();
+        assert!(found.len() > 300, "{} points in shadow", found.len());
+        let share = count(&found, Surroundings::DeepInShadow) as f64 / found.len() as f64;
+        println!("folds of {height} texels: {share} of {} points in shadow are deep", found.len());
+        assert!(deep.contains(&share), "{share} of {}", found.len());
+    }
+}
+
+#[test]
+fn empty_maps_leak_everywhere_and_full_ones_are_acne_everywhere() {
+    let cover = square("cover", 50.0 + 0.2 * TEXEL as f32, -1.0, 50.0);
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], settings());
+    let truth = truth_of(&frame);
+    let mut maps = DepthMaps::empty(SIZE, 2, Sampling::Nearest);
+    let at = |x: f64| dvec3(x * TEXEL, -2.0, 0.3);
+    let error = |maps: &DepthMaps| {
+        let bench = Bench::new(&frame, maps, &truth);
+        let places = [-8.0, -6.0, -4.0, 0.1, 0.6, 3.0, 5.0];
+        let points = places.map(|x| bench.point_at(at(x), None));
+        seen_error(&bench, &points, || ())
+    };
+    let empty = error(&maps);
+    let counts =
+        |e: &SeenError| [e.points, e.wrong, e.smoothly_lit, e.acne, e.deep_in_shadow, e.leak];
+    assert_eq!(counts(&empty), [7, 3, 3, 0, 2, 2]);
+    assert_eq!((empty.acne_mean, empty.leak_mean), (0.0, 1.0));
+    assert_eq!(
+        [empty.wrong_share(), empty.acne_share(), empty.leak_share()],
+        [3.0 / 7.0, 0.0, 1.0]
+    );
+    assert!((empty.rmse - (3.0_f64 / 7.0).sqrt()).abs() < 1e-12, "{empty:?}");
+    maps.depths.fill(0.0);
+    let full = error(&maps);
+    assert_eq!(counts(&full), [7, 4, 3, 3, 2, 0]);
+    assert_eq!((full.acne_mean, full.leak_mean), (1.0, 0.0));
+}
+
+#[test]
+fn triangles_are_connected_over_what_is_within_the_ball() {
+    // cells of 1; the second mesh's corners coincide with the first one's at x = 2
+    let mut right = field(4, 2.0, |_, _| 0.0);
+    right.positions.iter_mut().for_each(|p| p.x += 4.0);
+    let frame = frame_of(vec![field(4, 2.0, |_, _| 0.0), right], settings());
+    let truth = truth_of(&frame);
+    let of = |x: f64, radius: f64| {
+        let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+        let bench = Bench::new(&frame, &maps, &truth);
+        let point = bench.point_at(dvec3(x, -2.0, 0.4), None);
+        truth.connected(point.triangle.unwrap(), point.world, radius).len()
+    };
+    // within a triangle, away from its edges; over the cell's diagonal; both meshes
+    assert_eq!(of(0.2, 0.1), 1);
+    assert_eq!(of(0.2, 0.15), 2);
+    assert_eq!(of(0.2, 100.0), 2 * 32);
+    assert_eq!(of(1.95, 0.06), 2);
+    assert!(truth.connected(1_000_000, DVec3::ZERO, 1.0).is_empty());
+}
