@@ -200,11 +200,11 @@ fn errors_of_the_same_points_have_no_noise_and_of_others_have() {
     b.scenes[0].seed = 2;
     let text = compare(&a, &b).unwrap();
     assert!(text.contains("other points (20000 of seed 1, 20000 of seed 2)"), "{text}");
-    assert!(text.contains("shares of other points: 162 compared, 0 changed"), "{text}");
+    assert!(text.contains("shares of other points: 270 compared, 0 changed"), "{text}");
     assert!(!text.contains("contact gap"), "{text}");
     b.scenes[0].variants[3].error.false_light += 0.01;
     let text = compare(&a, &b).unwrap();
-    assert!(text.contains("shares of other points: 162 compared, 1 changed"), "{text}");
+    assert!(text.contains("shares of other points: 270 compared, 1 changed"), "{text}");
 }
 
 #[test]

@@ -126,6 +126,11 @@ fn check(report: &Report, runs: u32) {
             );
             let e = variant.error;
             assert!(e.faults <= e.misclassified() && e.misclassified() <= 1.0, "{name}: {e:?}");
+            for value in [e.rmse, e.acne, e.acne_mean, e.leak, e.leak_mean] {
+                assert!((0.0..=1.0).contains(&value), "{name}: {e:?}");
+            }
+            let judged = e.smoothly_lit + e.deep_in_shadow;
+            assert!(judged <= scene.points, "{name}: {e:?}");
             for value in [e.contact_gap, e.edge_texels_median, e.edge_degrees_largest] {
                 assert!(value.is_finite() && value >= 0.0, "{name}: {e:?}");
             }

@@ -193,7 +193,7 @@ fn empty_maps_leak_everywhere_and_full_ones_are_acne_everywhere() {
         let bench = Bench::new(&frame, maps, &truth);
         let places = [-8.0, -6.0, -4.0, 0.1, 0.6, 3.0, 5.0];
         let points = places.map(|x| bench.point_at(at(x), None));
-        seen_error(&bench, &points, || ())
+        seen_error(&bench, &points, &surroundings_of(&bench, &points, || ()))
     };
     let empty = error(&maps);
     let counts =
@@ -230,4 +230,57 @@ fn triangles_are_connected_over_what_is_within_the_ball() {
     assert_eq!(of(0.2, 100.0), 2 * 32);
     assert_eq!(of(1.95, 0.06), 2);
     assert!(truth.connected(1_000_000, DVec3::ZERO, 1.0).is_empty());
+}
+
+/// The errors of a picture of letters, a row a line: `X` is off by -1, `x` by 0.4, `.` by nothing, and
+/// a space shows no surface.
+fn drawn(rows: &[&str]) -> Vec<Option<f64>> {
+    let off = |letter: char| match letter {
+        'X' => Some(-1.0),
+        'x' => Some(0.4),
+        '.' => Some(0.0),
+        _ => None,
+    };
+    rows.iter().flat_map(|row| row.chars().map(off)).collect()
+}
+
+#[test]
+fn patches_and_dots_of_a_drawn_picture_are_counted() {
+    let rows = [
+        "X......X", // two dots in corners of the picture, not beside each other
+        "..X....x", ".X.X.. .", "..X... .", // a ring of four, joined diagonally
+        "......xX", // pixels that are nearly right part nothing off
+        "XX......", "........", ".....X.X",
+    ];
+    let errors = drawn(&rows);
+    let hard = picture_error(&errors, 8, 0.5);
+    assert_eq!((hard.size, hard.pixels), ([8, 8], 62));
+    assert_eq!((hard.wrong, hard.largest_patch, hard.dots), (11, 4, 5));
+    assert_eq!(hard.wrong_share(), 11.0 / 62.0);
+    assert!((hard.rmse - ((11.0 + 2.0 * 0.16) / 62.0_f64).sqrt()).abs() < 1e-12, "{hard:?}");
+    // what is off by 0.4 counts as well, and joins the corner's dot below it
+    let soft = picture_error(&errors, 8, 0.1);
+    assert_eq!((soft.wrong, soft.largest_patch, soft.dots), (13, 4, 3));
+    // a row does not go on in the next one
+    let turned = picture_error(&drawn(&["...X", "X...", "...."]), 4, 0.5);
+    assert_eq!((turned.wrong, turned.largest_patch, turned.dots), (2, 1, 2));
+    assert_eq!(picture_error(&[], 8, 0.5).wrong_share(), 0.0);
+    assert_eq!(picture_error(&drawn(&["X"]), 0, 0.5).wrong, 1);
+}
+
+#[test]
+fn every_pixel_of_a_picture_is_judged() {
+    let cover = square("cover", 1.0, -1.0, 0.5);
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], settings());
+    let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+    let bench = Bench::new(&frame, &maps, &truth);
+    let seen = bench.points_of_grid([40, 30]);
+    let errors = errors_of_image(&bench, &seen, || ());
+    let error = picture_error(&errors, 40, 0.5);
+    // the camera looks straight down from 5, so a part of the shadow shows beside the cover
+    assert_eq!((error.size, error.pixels), ([40, 30], 1200));
+    let dark = seen.iter().flatten().filter(|point| !bench.sees(point)).count();
+    assert!(dark > 10, "{dark} pixels");
+    assert_eq!((error.wrong, error.largest_patch, error.dots), (dark, dark, 0));
+    assert_eq!(bench.points_of_image().len(), 64 * 48);
 }

@@ -4,7 +4,9 @@ mod text;
 
 use clap::Args;
 use dpsm::gpu::Device;
-use dpsm::measure::{self, Bench, MapError, PenumbraError, Point, SeenError, ShadowError, Source};
+use dpsm::measure::{
+    self, Bench, MapError, PenumbraError, PictureError, Point, SeenError, ShadowError, Source,
+};
 use dpsm::render::{Frame, Lookup, Projection};
 use dpsm::scalar::maps::DepthMaps;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,9 +41,23 @@ pub struct MeasureArguments {
     /// Chooses the points; the same seed chooses the same ones
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Pixels along the width of the picture of which every pixel is judged, its height three quarters
+    /// of it; 0 for none
+    #[arg(long, value_name = "PIXELS", default_value_t = IMAGE[0] / 2, value_parser = clap::value_parser!(u32).range(0..=8192))]
+    picture: u32,
     /// JSON in place of a table
     #[arg(long)]
     json: bool,
+}
+
+/// The errors of all pixels; none of a picture without any.
+fn picture(bench: &Bench<'_>, width: u32) -> Option<PictureError> {
+    let size = [width, width * IMAGE[1] / IMAGE[0]];
+    let seen = bench.points_of_grid(size);
+    let progress = bar("pixels", seen.len());
+    let errors = measure::errors_of_image(bench, &seen, || progress.inc(1));
+    progress.finish_and_clear();
+    (!errors.is_empty()).then(|| measure::picture_error(&errors, width, measure::WRONG[0]))
 }
 
 /// Width and height of the image whose camera chooses points.
@@ -85,6 +101,8 @@ struct Report {
     constant_bias: Option<f32>,
     seed: u64,
     seen: SeenError,
+    /// None where no picture is asked for.
+    picture: Option<PictureError>,
     map: MapError,
     shadow: ShadowError,
     penumbra: PenumbraError,
@@ -120,8 +138,10 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         eprintln!("dpsm: the camera sees surfaces through {seen} of {asked} places of the image");
     }
     let progress = bar("surroundings", points.len());
-    let seen = measure::seen_error(&bench, &points, || progress.inc(1));
+    let around = measure::surroundings_of(&bench, &points, || progress.inc(1));
     progress.finish_and_clear();
+    let seen = measure::seen_error(&bench, &points, &around);
+    let picture = picture(&bench, arguments.picture);
     let progress = bar("map rows", (maps.size * maps.layers) as usize);
     let [tau, _] = frame.settings.tolerances();
     let map = measure::map_error(&bench, tau.into(), || progress.inc(1));
@@ -154,6 +174,7 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         constant_bias: frame.constant_bias(),
         seed: arguments.seed,
         seen,
+        picture,
         map,
         shadow,
         penumbra,

@@ -7,6 +7,7 @@ mod attribution;
 mod band;
 mod map;
 mod penumbra;
+mod picture;
 mod seen;
 mod shadow;
 mod silhouette;
@@ -16,7 +17,8 @@ pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straig
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
-pub use seen::{SeenError, seen_error};
+pub use picture::{PictureError, WRONG, errors_of_image, picture_error};
+pub use seen::{SeenError, seen_error, surroundings_of};
 pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
 pub use surface::{Surroundings, surroundings};
@@ -232,10 +234,15 @@ impl<'a> Bench<'a> {
 
     /// What the camera sees through the middle of each pixel, row by row from the top.
     pub fn points_of_image(&self) -> Vec<Option<Point>> {
+        self.points_of_grid(self.frame.settings.image)
+    }
+
+    /// What the camera sees through the middle of each of so many columns and rows of cells that fill
+    /// the image.
+    pub fn points_of_grid(&self, [width, height]: [u32; 2]) -> Vec<Option<Point>> {
         let view = &self.frame.view;
         let [eye, right, up, forward] =
             [view.eye, view.right, view.up, view.forward].map(|v| v.as_dvec3());
-        let [width, height] = self.frame.settings.image;
         let middle = |at: u32, of: u32| (2.0 * f64::from(at) + 1.0) / f64::from(of) - 1.0;
         let ray = |pixel: u32| {
             let x = middle(pixel % width, width) / f64::from(view.scale[0]);

@@ -49,21 +49,35 @@ fn share(part: f64, whole: usize) -> f64 {
     part / whole.max(1) as f64
 }
 
-/// Judges all points; `point_done` is called after each.
-pub fn seen_error(bench: &Bench<'_>, points: &[Point], point_done: impl Fn() + Sync) -> SeenError {
+/// Whether each point is lit and what shows around it: depends on the light, the maps' size and how
+/// they are sampled and filtered, not on what they hold. `point_done` is called after each.
+pub fn surroundings_of(
+    bench: &Bench<'_>,
+    points: &[Point],
+    point_done: impl Fn() + Sync,
+) -> Vec<(bool, Surroundings)> {
     let judge = |point: &Point| {
         let lit = bench.is_lit(point);
-        let judged = (f64::from(bench.visibility(point)), lit, surroundings(bench, point, lit));
         point_done();
-        judged
+        (lit, surroundings(bench, point, lit))
     };
-    let judged: Vec<(f64, bool, Surroundings)> = points.par_iter().map(judge).collect();
+    points.par_iter().map(judge).collect()
+}
+
+/// Judges all points, given what [`surroundings_of`] says of them.
+pub fn seen_error(
+    bench: &Bench<'_>,
+    points: &[Point],
+    surroundings: &[(bool, Surroundings)],
+) -> SeenError {
+    let seen: Vec<f64> =
+        points.par_iter().map(|point| f64::from(bench.visibility(point))).collect();
     let mut error = SeenError { points: points.len(), ..SeenError::default() };
     let (mut squares, mut dark, mut light) = (0.0, 0.0, 0.0);
-    for (visibility, lit, surroundings) in judged {
-        let off = visibility - f64::from(u8::from(lit));
+    for (visibility, (lit, surroundings)) in seen.into_iter().zip(surroundings) {
+        let off = visibility - f64::from(u8::from(*lit));
         squares += off * off;
-        let wrong = usize::from((visibility >= 0.5) != lit);
+        let wrong = usize::from((visibility >= 0.5) != *lit);
         error.wrong += wrong;
         match surroundings {
             Surroundings::SmoothlyLit => {

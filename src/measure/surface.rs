@@ -1,7 +1,6 @@
 //! What a lookup's footprint holds of the surface that a point lies on.
 
 use std::collections::HashSet;
-use std::f64::consts::SQRT_2;
 
 use super::shadow::Footprint;
 use super::silhouette::{Sample, Search};
@@ -17,6 +16,9 @@ const HALVINGS: i32 = 14;
 /// How much nearer than the receiver's plane an occluder is at the least, of the distance: rounding
 /// in f64 stays far below.
 const NEARER: f64 = 1e-9;
+
+/// How far from the point its surface is followed over triangles that are connected, in texels.
+const CONNECTED: f64 = 1.0;
 
 /// What shows where a lookup of a point reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +54,7 @@ struct Neighbourhood<'b> {
     rays: Vec<Sample>,
     /// Rays along a side.
     side: usize,
-    /// Of the ball in which triangles are connected: the footprint's diagonal.
+    /// Of the ball in which triangles are connected.
     radius: f64,
     /// The point's own triangle, and what is connected with it there.
     own: HashSet<u32>,
@@ -67,7 +69,7 @@ impl<'b> Neighbourhood<'b> {
         let cast = |i| search.sample(footprint.direction(bench, i, side).normalize());
         let rays = (0..side * side).map(cast).collect();
         let texel = (point.world - bench.origin).length() * pitch;
-        let radius = SQRT_2 * footprint.width() * texel;
+        let radius = CONNECTED * texel;
         let own = bench.truth.connected(triangle, point.world, radius);
         Self { search, point, rays, side, radius, own }
     }

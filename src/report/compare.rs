@@ -156,7 +156,7 @@ impl Comparison {
         if !same_points {
             self.notes.push(format!(
                 "{name}: other points ({} of seed {}, {} of seed {}), so shares are compared with \
-                 their noise, and largest errors are not",
+                 their noise, and means and largest errors are not",
                 a.points, a.seed, b.points, b.seed
             ));
         }
@@ -172,13 +172,13 @@ impl Comparison {
                 self.time(name, &format!("{variant}: lookup, ns"), &x.lookup, &y.lookup);
             }
             self.facts(name, &variant, &x, &y);
-            let errors = shares(&x).into_iter().zip(shares(&y));
-            for ((figure, p), (_, q)) in errors {
-                let what = format!("{variant}: {figure}, share of points");
+            let errors = shares(&x, a.points).into_iter().zip(shares(&y, b.points));
+            for ((figure, p, of_a), (_, q, of_b)) in errors {
+                let what = format!("{variant}: {figure}");
                 if same_points {
                     self.exact(name, what, p, q);
                 } else {
-                    self.share(name, what, (p, a.points), (q, b.points));
+                    self.share(name, what, (p, of_a), (q, of_b));
                 }
             }
             if same_points {
@@ -284,20 +284,25 @@ impl Comparison {
     }
 }
 
-/// The points that are wrong, as shares.
-fn shares(variant: &Variant) -> [(&'static str, f64); 3] {
+/// The points that are wrong, as shares of how many.
+fn shares(variant: &Variant, points: usize) -> [(&'static str, f64, usize); 5] {
     let error = &variant.error;
     [
-        ("false shadow", error.false_shadow),
-        ("false light", error.false_light),
-        ("faults", error.faults),
+        ("acne, share of smoothly lit points", error.acne, error.smoothly_lit),
+        ("leak, share of points deep in shadow", error.leak, error.deep_in_shadow),
+        ("false shadow, share of points", error.false_shadow, points),
+        ("false light, share of points", error.false_light, points),
+        ("faults, share of points", error.faults, points),
     ]
 }
 
-/// Errors of single points, whose largest depends on which points there are.
-fn distances(variant: &Variant) -> [(&'static str, f64); 4] {
+/// Means, and errors of single points, whose largest depends on which points there are.
+fn distances(variant: &Variant) -> [(&'static str, f64); 7] {
     let error = &variant.error;
     [
+        ("RMSE", error.rmse),
+        ("mean darkness of smoothly lit points", error.acne_mean),
+        ("mean light of points deep in shadow", error.leak_mean),
         ("contact gap", error.contact_gap),
         ("median edge, texels", error.edge_texels_median),
         ("largest edge, texels", error.edge_texels_largest),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 /// The version of report.json that this program writes and reads.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// A whole report.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -152,6 +152,20 @@ pub enum Role {
 /// Shadows against ray casting, at the scene's points; docs/measure.md.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorFigures {
+    /// Root of the mean squared difference of the visibility from the hard truth.
+    pub rmse: f64,
+    /// Smoothly lit points that the map shadows, share of these.
+    pub acne: f64,
+    /// The mean of 1 - visibility over the smoothly lit points.
+    pub acne_mean: f64,
+    /// Smoothly lit points.
+    pub smoothly_lit: usize,
+    /// Points deep in shadow that the map lights, share of these.
+    pub leak: f64,
+    /// The mean of the visibility over the points deep in shadow.
+    pub leak_mean: f64,
+    /// Points deep in shadow.
+    pub deep_in_shadow: usize,
     /// Lit points that the map shadows, share of all.
     pub false_shadow: f64,
     /// Shadowed points that the map lights, share of all.
@@ -169,7 +183,7 @@ pub struct ErrorFigures {
 }
 
 impl ErrorFigures {
-    /// Misclassified points, share of all: the error of the plots.
+    /// Misclassified points, share of all, nothing excused: the error of the plots.
     pub fn misclassified(&self) -> f64 {
         self.false_shadow + self.false_light
     }

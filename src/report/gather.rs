@@ -1,5 +1,6 @@
 //! The figures of one scene.
 
+use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::Vec3;
@@ -10,7 +11,7 @@ use super::timing::{self, Timed};
 use super::variants::{self, Choice};
 use super::{pareto, pictures};
 use crate::gpu::{Device, GpuError};
-use crate::measure::{self, Bench, Point, ShadowError};
+use crate::measure::{self, Bench, Point, SeenError, ShadowError};
 use crate::plan::PlanError;
 use crate::render::{Frame, FrameError, Method, Settings};
 use crate::scalar::maps::{DepthMaps, Sampling};
@@ -192,6 +193,8 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
     (job.step)("errors");
     let mut measured = Vec::new();
     let mut sources = Vec::new();
+    // variants that read the same texels share what shows in them
+    let mut around = HashMap::new();
     for (index, choice) in choices.iter().enumerate() {
         let frame = choice.frame(subject)?;
         let mut variant = variants::described(choice, &frame)?;
@@ -199,7 +202,13 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
         variant.lookup = timed.lookup[index];
         let maps = read_as(&timed, index, choice);
         let bench = Bench::new(&frame, &maps, &truth);
-        variant.error = figures(&measure::shadow_error(&bench, &points, || {}));
+        let key =
+            format!("{:?} {:?}", frame.light, (maps.size, maps.sampling, choice.settings.filter));
+        let around = around
+            .entry(key + &format!(" {:?}", bench.projection))
+            .or_insert_with(|| measure::surroundings_of(&bench, &points, || {}));
+        let seen = measure::seen_error(&bench, &points, around);
+        variant.error = figures(&measure::shadow_error(&bench, &points, || {}), &seen);
         if is_explained(choice, effort) {
             sources.extend(explained(&bench, &points, &choice.name));
         }
@@ -236,9 +245,16 @@ fn read_as(timed: &Timed, index: usize, choice: &Choice) -> DepthMaps {
 }
 
 /// The shares of all points, and the largest of what has a size.
-fn figures(error: &ShadowError) -> ErrorFigures {
+fn figures(error: &ShadowError, seen: &SeenError) -> ErrorFigures {
     let share = |part: usize| part as f64 / error.points.max(1) as f64;
     ErrorFigures {
+        rmse: seen.rmse,
+        acne: seen.acne_share(),
+        acne_mean: seen.acne_mean,
+        smoothly_lit: seen.smoothly_lit,
+        leak: seen.leak_share(),
+        leak_mean: seen.leak_mean,
+        deep_in_shadow: seen.deep_in_shadow,
         false_shadow: share(error.false_shadow),
         false_light: share(error.false_light),
         faults: share(error.faults()),

@@ -6,8 +6,11 @@ use rayon::prelude::*;
 
 use super::data::Image;
 use super::gather::{Job, ReportError, Subject};
+use super::html::percent;
 use super::variants::{self, method_name};
-use crate::measure::{Bench, Point, edge_point};
+use crate::measure::{
+    Bench, PictureError, Point, Surroundings, WRONG, picture_error, surroundings,
+};
 use crate::render::{Method, Picture, Rendering, Settings};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::truth::Truth;
@@ -67,19 +70,19 @@ pub fn pictures(
         let Some(maps) = maps(method) else { continue };
         let frame = subject.frame(&pictured(method))?;
         let bench = Bench::new(&frame, &maps, truth);
-        let (picture, counts) = errors(&bench, seen, &lit);
+        let (picture, [acne, leak, edge], lie) = errors(&bench, seen, &lit);
         let name = method_name(method);
         let side = maps.size;
         let caption = format!(
             "Every pixel's shadow by the {name} method (maps of {side} x {side}) against ray \
              casting. Light grey: rightly lit; dark grey: rightly in shadow; black: no surface. \
-             Orange: falsely in shadow, {} pixels; blue: falsely lit, {} pixels. Pale where the \
-             true shadow edge runs through the texel, so that its size explains the error ({} \
-             pixels); saturated where it does not, a fault of the method ({} pixels).",
-            counts.shadow,
-            counts.light,
-            counts.edges,
-            counts.shadow + counts.light - counts.edges,
+             Orange: acne, in shadow where the surface is smoothly lit, {acne} pixels; blue: \
+             leaks, lit deep in shadow, {leak} pixels; yellow: wrong where an outline passes \
+             through what the lookup reads, {edge} pixels. {} of all are wrong; the largest patch of \
+             them has {} pixels, and {} stand alone as dots.",
+            percent(lie.wrong_share()),
+            lie.largest_patch,
+            lie.dots,
         );
         let title = format!("Errors, {name} method");
         gallery.add(&format!("{name}-errors"), &title, caption, &picture)?;
@@ -120,67 +123,64 @@ fn render(job: &Job<'_>, frame: &crate::render::Frame) -> Result<Rendering, Repo
     })
 }
 
-/// Misclassified pixels.
-struct Counts {
-    shadow: usize,
-    light: usize,
-    /// Of both: those at true shadow edges.
-    edges: usize,
-}
-
 /// A pixel's verdict.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Verdict {
     Nothing,
     Lit,
     Dark,
-    FalseShadow { edge: bool },
-    FalseLight { edge: bool },
+    /// Smoothly lit and in shadow by the map.
+    Acne,
+    /// Deep in shadow and lit by the map.
+    Leak,
+    /// Wrong where an outline passes through what is read.
+    Edge,
 }
 
 impl Verdict {
-    /// Vermilion and blue of Okabe and Ito's palette, which colour-blind people can tell apart;
-    /// the same mixed with white.
+    /// Vermilion, blue and yellow of Okabe and Ito's palette, which colour-blind people can tell apart.
     fn colour(self) -> [u8; 4] {
         let [r, g, b] = match self {
             Self::Nothing => [0, 0, 0],
             Self::Lit => [228, 228, 228],
             Self::Dark => [95, 95, 95],
-            Self::FalseShadow { edge: false } => [213, 94, 0],
-            Self::FalseShadow { edge: true } => [240, 170, 110],
-            Self::FalseLight { edge: false } => [0, 114, 178],
-            Self::FalseLight { edge: true } => [120, 185, 228],
+            Self::Acne => [213, 94, 0],
+            Self::Leak => [0, 114, 178],
+            Self::Edge => [240, 228, 66],
         };
         [r, g, b, 255]
     }
 }
 
-/// Each pixel against `lit`, what ray casting says of it.
-fn errors(bench: &Bench<'_>, seen: &[Option<Point>], lit: &[bool]) -> (Picture, Counts) {
+/// A picture of each pixel against `lit`, what ray casting says of it; the pixels of acne, leaks and
+/// edges; and how they lie.
+fn errors(
+    bench: &Bench<'_>,
+    seen: &[Option<Point>],
+    lit: &[bool],
+) -> (Picture, [usize; 3], PictureError) {
     let judge = |(point, lit): (&Option<Point>, &bool)| {
-        let Some(point) = point else { return Verdict::Nothing };
+        let Some(point) = point else { return (Verdict::Nothing, None) };
         let at = bench.projection.lookup(bench.to_light(point.world).narrow(), bench.frame.light);
         // behind a hemispherical light all is dark by definition
         let lit = *lit && at.mapped;
-        match (bench.visibility(point) >= 0.5, lit) {
+        let visibility = f64::from(bench.visibility(point));
+        let verdict = match (visibility >= 0.5, lit) {
             (true, true) => Verdict::Lit,
             (false, false) => Verdict::Dark,
-            (false, true) => Verdict::FalseShadow { edge: edge_point(bench, point) },
-            (true, false) => Verdict::FalseLight { edge: edge_point(bench, point) },
-        }
+            _ => match surroundings(bench, point, lit) {
+                Surroundings::SmoothlyLit => Verdict::Acne,
+                Surroundings::DeepInShadow => Verdict::Leak,
+                Surroundings::Mixed => Verdict::Edge,
+            },
+        };
+        (verdict, Some(visibility - f64::from(u8::from(lit))))
     };
-    let verdicts: Vec<Verdict> = seen.par_iter().zip(lit).map(judge).collect();
-    let count = |wanted: &[Verdict]| verdicts.iter().filter(|v| wanted.contains(v)).count();
-    let [shadow, light] = [
-        [Verdict::FalseShadow { edge: false }, Verdict::FalseShadow { edge: true }],
-        [Verdict::FalseLight { edge: false }, Verdict::FalseLight { edge: true }],
-    ];
-    let counts = Counts {
-        shadow: count(&shadow),
-        light: count(&light),
-        edges: count(&[shadow[1], light[1]]),
-    };
+    let (verdicts, off): (Vec<Verdict>, Vec<Option<f64>>) =
+        seen.par_iter().zip(lit).map(judge).unzip();
+    let count = |wanted: Verdict| verdicts.iter().filter(|found| **found == wanted).count();
+    let counts = [Verdict::Acne, Verdict::Leak, Verdict::Edge].map(count);
     let [width, height] = bench.frame.settings.image;
     let pixels = verdicts.iter().map(|verdict| verdict.colour()).collect();
-    (Picture { width, height, pixels }, counts)
+    (Picture { width, height, pixels }, counts, picture_error(&off, width, WRONG[0]))
 }

@@ -50,6 +50,13 @@ fn variant(method: usize, size: u32, filter: usize) -> Variant {
         generation: times(making * (0.6 + 0.4 * scale), 0.03),
         lookup: times(lookup * (1.0 + 0.02 * method as f64) * scale.powf(0.1), 0.05),
         error: ErrorFigures {
+            rmse: (wrong * 0.9).sqrt(),
+            acne: wrong * 0.4,
+            acne_mean: wrong * 0.45,
+            smoothly_lit: 15_000,
+            leak: wrong * 0.05,
+            leak_mean: wrong * 0.06,
+            deep_in_shadow: 3_000,
             false_shadow: wrong * 0.7,
             false_light: wrong * 0.3,
             faults: if method < 2 { wrong * 0.1 } else { 0.0 },

@@ -51,6 +51,19 @@ fn seen(report: &Report, text: &mut String) {
         s.deep_in_shadow,
         100.0 * s.leak_mean
     );
+    let Some(p) = &report.picture else { return };
+    let [width, height] = p.size;
+    let _ = writeln!(
+        text,
+        "  picture of {width} x {height}: {:.3}% of {} pixels off by more than {}, RMSE {:.4}; the \
+         largest patch of them {}, dots {}",
+        100.0 * p.wrong_share(),
+        p.pixels,
+        p.threshold,
+        p.rmse,
+        p.largest_patch,
+        p.dots
+    );
 }
 
 fn points(report: &Report, text: &mut String) {

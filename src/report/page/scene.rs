@@ -115,13 +115,16 @@ fn legend(variants: &[Variant]) -> String {
     )
 }
 
-const HEAD: [&str; 17] = [
+const HEAD: [&str; 20] = [
     "row",
     "variant",
     "making, ms",
     "lookup, ns a pixel",
     "MiB",
-    "misclassified",
+    "wrong",
+    "acne",
+    "leak",
+    "RMSE",
     "false shadow",
     "false light",
     "faults",
@@ -139,7 +142,9 @@ fn variants(variants: &[Variant], id: &str) -> String {
     let rows: String = variants.iter().enumerate().map(|(i, variant)| row(i, variant)).collect();
     let caption = "Every variant; a star is the plan's choice, squares are cubes. Grey ones are \
                    dominated: the variant named below is at least as good in making, lookup, \
-                   memory and misclassified points, and better in one.";
+                   memory and wrong points, and better in one. Acne: of the \
+                   points that are smoothly lit, those in shadow by the map; leak: of those deep in \
+                   shadow, those lit.";
     table(id, "named", caption, &HEAD, &rows)
 }
 
@@ -155,6 +160,9 @@ fn row(i: usize, variant: &Variant) -> String {
         times(&variant.lookup),
         number(variant.bytes as f64 / f64::from(1 << 20)),
         percent(error.misclassified()),
+        percent(error.acne),
+        percent(error.leak),
+        number(error.rmse),
         percent(error.false_shadow),
         percent(error.false_light),
         percent(error.faults),

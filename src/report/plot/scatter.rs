@@ -68,7 +68,7 @@ pub fn speed_error(scene: &SceneFigures, cost: Cost) -> String {
         names.join("; ")
     );
     svg(SIZE, &title, &about, |area| {
-        let mut chart = axes(area, (&x, "misclassified points, %"), (&y, cost.axis()))?;
+        let mut chart = axes(area, (&x, "wrong points, %"), (&y, cost.axis()))?;
         chart.draw_series([PathElement::new(steps(&places, &front), INK.mix(0.6))])?;
         let whisker = |i: usize| {
             let (at, times) = (places[i].0, times[i]);

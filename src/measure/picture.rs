@@ -1,0 +1,114 @@
+//! The errors of a picture's pixels, and how they lie: large patches, and dots.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Bench, Point};
+
+/// How far off a pixel's visibility is where it counts as wrong, by the truth's kind: the hard one is 0
+/// or 1, and a soft one shows steps of a tenth.
+pub const WRONG: [f64; 2] = [0.5, 0.1];
+
+/// A picture's errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PictureError {
+    /// Width and height of the picture in pixels.
+    pub size: [u32; 2],
+    /// Pixels that show a surface.
+    pub pixels: usize,
+    /// Pixels off by more than this are wrong.
+    pub threshold: f64,
+    /// Wrong pixels.
+    pub wrong: usize,
+    /// Root of the mean squared error over all that show a surface.
+    pub rmse: f64,
+    /// Pixels of the largest patch of wrong ones, each beside the next or diagonally so.
+    pub largest_patch: usize,
+    /// Wrong pixels without a wrong one among the eight around them.
+    pub dots: usize,
+}
+
+impl PictureError {
+    /// Wrong pixels, share of those that show a surface.
+    pub fn wrong_share(&self) -> f64 {
+        self.wrong as f64 / self.pixels.max(1) as f64
+    }
+}
+
+/// Judges an image of errors, row by row, `width` of them in each; `None` where it shows nothing. What
+/// is left of a row that is not whole counts like a row.
+///
+/// ```
+/// use dpsm::measure::picture_error;
+///
+/// let errors = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0, -1.0].map(Some);
+/// let error = picture_error(&errors, 3, 0.5);
+/// assert_eq!((error.wrong, error.largest_patch, error.dots), (3, 2, 1));
+/// ```
+pub fn picture_error(errors: &[Option<f64>], width: u32, threshold: f64) -> PictureError {
+    let wrong: Vec<bool> =
+        errors.iter().map(|error| error.is_some_and(|error| error.abs() > threshold)).collect();
+    let seen = || errors.iter().flatten();
+    let pixels = seen().count();
+    let squares: f64 = seen().map(|error| error * error).sum();
+    let patches = patches(&wrong, width.max(1) as usize);
+    PictureError {
+        size: [width, (errors.len() as u32).div_ceil(width.max(1))],
+        pixels,
+        threshold,
+        wrong: patches.iter().sum(),
+        rmse: (squares / pixels.max(1) as f64).sqrt(),
+        largest_patch: patches.iter().copied().max().unwrap_or(0),
+        dots: patches.iter().filter(|pixels| **pixels == 1).count(),
+    }
+}
+
+/// How many pixels each patch has.
+fn patches(wrong: &[bool], width: usize) -> Vec<usize> {
+    let mut taken = vec![false; wrong.len()];
+    let mut patches = Vec::new();
+    for start in 0..wrong.len() {
+        if !wrong[start] || taken[start] {
+            continue;
+        }
+        taken[start] = true;
+        let (mut open, mut pixels) = (vec![start], 0);
+        while let Some(at) = open.pop() {
+            pixels += 1;
+            for next in around(at, width) {
+                if wrong.get(next) == Some(&true) && !taken[next] {
+                    taken[next] = true;
+                    open.push(next);
+                }
+            }
+        }
+        patches.push(pixels);
+    }
+    patches
+}
+
+/// The pixels around one; those below the last row are there too.
+fn around(at: usize, width: usize) -> impl Iterator<Item = usize> {
+    let (column, row) = (at % width, at / width);
+    let columns = column.saturating_sub(1)..=(column + 1).min(width - 1);
+    let rows = row.saturating_sub(1)..=row + 1;
+    rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+        .filter(move |next| *next != at)
+}
+
+/// Visibility less truth at what the camera sees through each pixel of the frame's image, row by row
+/// from the top.
+pub fn errors_of_image(
+    bench: &Bench<'_>,
+    seen: &[Option<Point>],
+    pixel_done: impl Fn() + Sync,
+) -> Vec<Option<f64>> {
+    let error = |point: &Point| {
+        f64::from(bench.visibility(point)) - f64::from(u8::from(bench.is_lit(point)))
+    };
+    let pixels = seen.par_iter().map(|point| {
+        pixel_done();
+        point.as_ref().map(error)
+    });
+    pixels.collect()
+}
