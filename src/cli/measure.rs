@@ -5,9 +5,10 @@ mod text;
 use clap::Args;
 use dpsm::gpu::Device;
 use dpsm::measure::{
-    self, Bench, MapError, PenumbraError, PictureError, Point, SeenError, ShadowError, Source,
+    self, Bench, MapError, PenumbraError, PictureError, Point, SeenError, ShadowError, SoftError,
+    Source,
 };
-use dpsm::render::{Frame, Lookup, Projection};
+use dpsm::render::{Filter, Frame, Lookup, Projection};
 use dpsm::scalar::maps::DepthMaps;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -42,22 +43,31 @@ pub struct MeasureArguments {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Pixels along the width of the picture of which every pixel is judged, its height three quarters
-    /// of it; 0 for none
-    #[arg(long, value_name = "PIXELS", default_value_t = IMAGE[0] / 2, value_parser = clap::value_parser!(u32).range(0..=8192))]
-    picture: u32,
+    /// of it; 0 for none; by default 480, or 160 where rays to a spherical light are the truth
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(0..=8192))]
+    picture: Option<u32>,
     /// JSON in place of a table
     #[arg(long)]
     json: bool,
 }
 
+/// Widths of the picture, by the truth's kind.
+const HARD_PICTURE: u32 = 480;
+const SOFT_PICTURE: u32 = 160;
+
 /// The errors of all pixels; none of a picture without any.
-fn picture(bench: &Bench<'_>, width: u32) -> Option<PictureError> {
+fn picture(bench: &Bench<'_>, width: Option<u32>) -> Option<PictureError> {
+    let (usual, threshold) = match bench.frame.settings.filter {
+        Filter::Single | Filter::Naive(_) => (HARD_PICTURE, measure::WRONG_HARD),
+        _ => (SOFT_PICTURE, measure::WRONG_SOFT),
+    };
+    let width = width.unwrap_or(usual);
     let size = [width, width * IMAGE[1] / IMAGE[0]];
     let seen = bench.points_of_grid(size);
     let progress = bar("pixels", seen.len());
     let errors = measure::errors_of_image(bench, &seen, || progress.inc(1));
     progress.finish_and_clear();
-    (!errors.is_empty()).then(|| measure::picture_error(&errors, width, measure::WRONG[0]))
+    (!errors.is_empty()).then(|| measure::picture_error(&errors, width, threshold))
 }
 
 /// Width and height of the image whose camera chooses points.
@@ -103,6 +113,8 @@ struct Report {
     seen: SeenError,
     /// None where no picture is asked for.
     picture: Option<PictureError>,
+    /// None for filters that stand for no spherical light.
+    soft: Option<SoftError>,
     map: MapError,
     shadow: ShadowError,
     penumbra: PenumbraError,
@@ -142,6 +154,9 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
     progress.finish_and_clear();
     let seen = measure::seen_error(&bench, &points, &around);
     let picture = picture(&bench, arguments.picture);
+    let progress = bar("soft shadows", points.len());
+    let soft = measure::soft_error(&bench, &points, || progress.inc(1));
+    progress.finish_and_clear();
     let progress = bar("map rows", (maps.size * maps.layers) as usize);
     let [tau, _] = frame.settings.tolerances();
     let map = measure::map_error(&bench, tau.into(), || progress.inc(1));
@@ -175,6 +190,7 @@ pub fn measure(adapter: AdapterChoice, arguments: &MeasureArguments) -> Result<(
         seed: arguments.seed,
         seen,
         picture,
+        soft,
         map,
         shadow,
         penumbra,

@@ -11,16 +11,18 @@ mod picture;
 mod seen;
 mod shadow;
 mod silhouette;
+mod soft;
 mod surface;
 
 pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straight, left_out};
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
-pub use penumbra::{PenumbraError, coverage, penumbra_error, soft_coverage};
-pub use picture::{PictureError, WRONG, errors_of_image, picture_error};
+pub use penumbra::{PenumbraError, coverage, penumbra_error};
+pub use picture::{PictureError, WRONG_HARD, WRONG_SOFT, errors_of_image, picture_error};
 pub use seen::{SeenError, seen_error, surroundings_of};
 pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
+pub use soft::{SoftError, SoftFigures, at_crease, soft_coverage, soft_error};
 pub use surface::{Surroundings, surroundings};
 
 use fastrand::Rng;
@@ -160,11 +162,16 @@ impl<'a> Bench<'a> {
         self.occluder(point).is_none()
     }
 
+    /// True where the light has a map of a point's direction.
+    pub fn is_mapped(&self, point: &Point) -> bool {
+        let p = self.to_light(point.world).narrow();
+        self.projection.lookup(p, self.frame.light).mapped
+    }
+
     /// True where the light reaches a point: nothing keeps it away, and the light has a map there.
     /// Behind a hemispherical light all is dark by definition.
     pub fn is_lit(&self, point: &Point) -> bool {
-        let p = self.to_light(point.world).narrow();
-        self.projection.lookup(p, self.frame.light).mapped && self.sees(point)
+        self.is_mapped(point) && self.sees(point)
     }
 
     /// True where a direction of the light reaches the plane of a receiver, or `None` where it

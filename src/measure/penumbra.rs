@@ -58,21 +58,6 @@ pub fn coverage(bench: &Bench<'_>, point: &Point, half_angle: f64) -> f64 {
     f64::from(lit) / f64::from(taken.max(1))
 }
 
-/// The share of a spherical light's disk that a point sees: rays from Vogel's spiral over the disk
-/// that faces the point.
-pub fn soft_coverage(bench: &Bench<'_>, point: &Point, radius: f64) -> f64 {
-    let axis = (point.world - bench.origin).normalize_or_zero();
-    let (side, other) = axis.any_orthonormal_pair();
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    let lit = (0..CONE_RAYS).filter(|&k| {
-        let ring = ((f64::from(k) + 0.5) / f64::from(CONE_RAYS)).sqrt() * radius;
-        let (sin, cos) = (golden * f64::from(k)).sin_cos();
-        let from = bench.origin + (side * cos + other * sin) * ring;
-        bench.truth.occluder(from, point.world, point.triangle, 0.0).is_none()
-    });
-    lit.count() as f64 / f64::from(CONE_RAYS)
-}
-
 /// The half-angle of the cone that stands for a filter's kernel at a point: its own, or that of a
 /// disk of the area that a lookup or a naive kernel reads. For a soft light, the light's.
 fn cone(bench: &Bench<'_>, distance: f64, pitch: f64) -> f64 {
@@ -118,9 +103,7 @@ pub fn penumbra_error(
             let (distance, pitch) = ((point.world - bench.origin).length(), bench.pitch(uv));
             let half_angle = cone(bench, distance, pitch);
             let truth = match bench.frame.settings.filter {
-                Filter::Soft { .. } => {
-                    soft_coverage(bench, point, f64::from(bench.frame.soft()[0]))
-                }
+                Filter::Soft { .. } => bench.true_visibility(point),
                 _ => coverage(bench, point, half_angle),
             };
             point_done();

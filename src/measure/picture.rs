@@ -5,9 +5,11 @@ use serde::Serialize;
 
 use super::{Bench, Point};
 
-/// How far off a pixel's visibility is where it counts as wrong, by the truth's kind: the hard one is 0
-/// or 1, and a soft one shows steps of a tenth.
-pub const WRONG: [f64; 2] = [0.5, 0.1];
+/// How far off a pixel's visibility is at the least where it counts as wrong, if the truth is 0 or 1.
+pub const WRONG_HARD: f64 = 0.5;
+
+/// The same for a spherical light: a tenth of it shows.
+pub const WRONG_SOFT: f64 = 0.1;
 
 /// A picture's errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -103,9 +105,7 @@ pub fn errors_of_image(
     seen: &[Option<Point>],
     pixel_done: impl Fn() + Sync,
 ) -> Vec<Option<f64>> {
-    let error = |point: &Point| {
-        f64::from(bench.visibility(point)) - f64::from(u8::from(bench.is_lit(point)))
-    };
+    let error = |point: &Point| f64::from(bench.visibility(point)) - bench.true_visibility(point);
     let pixels = seen.par_iter().map(|point| {
         pixel_done();
         point.as_ref().map(error)

@@ -9,7 +9,7 @@ use super::gather::{Job, ReportError, Subject};
 use super::html::percent;
 use super::variants::{self, method_name};
 use crate::measure::{
-    Bench, PictureError, Point, Surroundings, WRONG, picture_error, surroundings,
+    Bench, PictureError, Point, Surroundings, WRONG_HARD, picture_error, surroundings,
 };
 use crate::render::{Method, Picture, Rendering, Settings};
 use crate::scalar::maps::{DepthMaps, Sampling};
@@ -182,5 +182,5 @@ fn errors(
     let counts = [Verdict::Acne, Verdict::Leak, Verdict::Edge].map(count);
     let [width, height] = bench.frame.settings.image;
     let pixels = verdicts.iter().map(|verdict| verdict.colour()).collect();
-    (Picture { width, height, pixels }, counts, picture_error(&off, width, WRONG[0]))
+    (Picture { width, height, pixels }, counts, picture_error(&off, width, WRONG_HARD))
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use dpsm::measure::{MapError, Source};
+use dpsm::measure::{MapError, SoftError, Source};
 
 use super::super::setup::Names;
 use super::{MeshSources, Report};
@@ -51,6 +51,7 @@ fn seen(report: &Report, text: &mut String) {
         s.deep_in_shadow,
         100.0 * s.leak_mean
     );
+    soft(report, text);
     let Some(p) = &report.picture else { return };
     let [width, height] = p.size;
     let _ = writeln!(
@@ -64,6 +65,26 @@ fn seen(report: &Report, text: &mut String) {
         p.largest_patch,
         p.dots
     );
+}
+
+/// Against rays to a spherical light.
+fn soft(report: &Report, text: &mut String) {
+    let Some(SoftError { radius, all, creases, elsewhere }) = &report.soft else { return };
+    let _ = writeln!(text, "soft, against rays to a light of radius {radius:.4}:");
+    let rows = [("all", all), ("at creases", creases), ("elsewhere", elsewhere)];
+    for (name, figures) in rows {
+        let _ = writeln!(
+            text,
+            "  {name:<11}RMSE {:.4} of {} points; {} fully lit, mean darkness {:.3}%; {} in the \
+             umbra, mean light {:.3}%",
+            figures.rmse,
+            figures.points,
+            figures.fully_lit,
+            100.0 * figures.darkness,
+            figures.umbra,
+            100.0 * figures.light
+        );
+    }
 }
 
 fn points(report: &Report, text: &mut String) {
