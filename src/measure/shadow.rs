@@ -2,20 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::footprint::{FEWEST_RAYS, Footprint, texel_place};
 use super::{Bench, Point, percentile};
 use crate::scalar::float::Vec2;
-use crate::scalar::maps::Sampling;
-use crate::scalar::paraboloid::dpsm_texture_to_disk;
-
-/// Rays along a side of a footprint, its corners included.
-const FOOTPRINT_RAYS: u32 = 5;
-
-/// The most of them, for wide kernels.
-const MOST_RAYS: f64 = 17.0;
 
 /// Radii in texels at which the true shadow edge is looked for.
 const RINGS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
@@ -83,66 +75,12 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
     }
 }
 
-/// The place of coordinates counted in texels.
-fn texel_place(bench: &Bench<'_>, [x, y]: [f64; 2]) -> Vec2<f64> {
-    dpsm_texture_to_disk(Vec2::new(x, y) / bench.light.size, bench.light.guard)
-}
-
-/// The texels that a point's lookup reads.
-pub(super) struct Footprint {
-    /// The map, and the texel that holds the point.
-    map: u32,
-    texel: [f64; 2],
-    /// Texels read on each side of it.
-    reach: f64,
-}
-
-impl Footprint {
-    /// `None` where the light has no map.
-    pub(super) fn of(bench: &Bench<'_>, point: &Point) -> Option<Self> {
-        let p = bench.to_light(point.world).narrow();
-        let at = bench.projection.lookup(p, bench.frame.light);
-        let texel = |c: f32| (f64::from(c) * f64::from(bench.maps.size)).floor();
-        let own = match bench.maps.sampling {
-            Sampling::Nearest => 0.0,
-            Sampling::Linear => 1.0,
-        };
-        at.mapped.then(|| Self {
-            map: at.hemisphere,
-            texel: [at.coordinates.x, at.coordinates.y].map(texel),
-            reach: own + bench.kernel_texels(point).ceil(),
-        })
-    }
-
-    /// Texels along its side.
-    pub(super) fn width(&self) -> f64 {
-        1.0 + 2.0 * self.reach
-    }
-
-    /// Rays along its side, corners included: two a texel, within limits.
-    pub(super) fn rays(&self) -> usize {
-        (2.0 * self.width() + 1.0).clamp(f64::from(FOOTPRINT_RAYS), MOST_RAYS) as usize
-    }
-
-    /// The place of one of `rays` x `rays` that fill it, row by row, corners included.
-    fn place(&self, bench: &Bench<'_>, index: usize, rays: usize) -> Vec2<f64> {
-        let offset = |k: usize| k as f64 / (rays - 1) as f64 * self.width() - self.reach;
-        let [x, y] = self.texel;
-        texel_place(bench, [x + offset(index % rays), y + offset(index / rays)])
-    }
-
-    /// The same as a world direction.
-    pub(super) fn direction(&self, bench: &Bench<'_>, index: usize, rays: usize) -> DVec3 {
-        bench.direction(self.place(bench, index, rays), self.map)
-    }
-}
-
 /// True of an edge point: the rays over the texels that its lookup reads do not all agree, or miss
 /// the point's plane.
 pub fn edge_point(bench: &Bench<'_>, point: &Point) -> bool {
     let Some(footprint) = Footprint::of(bench, point) else { return false };
     let sees = bench.sees(point);
-    let rays = FOOTPRINT_RAYS as usize;
+    let rays = FEWEST_RAYS;
     (0..rays * rays).any(|i| {
         let uv = footprint.place(bench, i, rays);
         bench.reaches(point, uv, footprint.map).is_none_or(|reaches| reaches != sees)

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use super::shadow::Footprint;
+use super::footprint::Footprint;
 use super::silhouette::{Sample, Search};
 use super::{Bench, Point};
 
@@ -127,8 +127,8 @@ impl<'b> Neighbourhood<'b> {
                 Some(normal) => normal.dot(to_point) / normal.dot(ray.direction),
                 None => to_point.length(),
             };
-            // a plane that is not ahead hides nothing
-            let nearer = !(plane > 0.0) || hit.distance < plane * (1.0 - NEARER);
+            // where the plane is not ahead, everything is nearer
+            let nearer = plane <= 0.0 || hit.distance < plane * (1.0 - NEARER);
             nearer && !self.own.contains(&hit.triangle)
         };
         self.rays.iter().all(hides)
