@@ -1,6 +1,7 @@
 //! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
 
 mod error;
+mod exposure;
 mod extent;
 mod filter;
 mod meshes;
@@ -9,6 +10,7 @@ mod projection;
 mod settings;
 
 pub use error::FrameError;
+pub use exposure::{BACKGROUND, BRIGHTEST, CLIPPED, Linear, MOST_SAMPLES, WHITE, exposure, srgb};
 pub use extent::Extent;
 pub(crate) use extent::{common, nearest_of};
 pub use picture::Picture;
@@ -63,9 +65,12 @@ pub struct View {
     pub near: f32,
     /// Cotangents of half the horizontal and vertical fields of view.
     pub scale: [f32; 2],
+    /// How far the image is moved to the right and up, in halves of it; for samples.
+    pub shift: [f32; 2],
 }
 
-/// Ambient light's share of the light's colour.
+/// Ambient light's share of the light's colour on a surface that faces the eye; half of it on one
+/// seen edge-on, so that shadows show shapes too.
 pub const AMBIENT: f32 = 0.2;
 
 /// Strength of the highlight.
@@ -107,10 +112,28 @@ pub struct Rendering {
     pub lit: Picture,
     /// The stored maps, one layer a hemisphere, where the settings ask for views.
     pub maps: Option<DepthMaps>,
-    /// What the light sees of each hemisphere, where asked for.
+    /// What the light sees of each hemisphere, where asked for, all with one exposure of their own.
     pub views: Vec<Picture>,
-    /// Each pass and its time.
+    /// The factor on the lit image's linear light.
+    pub exposure: f32,
+    /// Each pass and its time; of the camera's on an adapter, one sample of each pixel.
     pub timings: Vec<(String, Duration)>,
+}
+
+impl Rendering {
+    /// The rendering under the exposures that the frame's settings ask for.
+    pub(crate) fn new(
+        frame: &Frame,
+        lit: &Linear,
+        views: &[Linear],
+        maps: Option<DepthMaps>,
+        timings: Vec<(String, Duration)>,
+    ) -> Self {
+        let exposure = frame.settings.exposure_of(&[lit]);
+        let of_views = frame.settings.exposure_of(&views.iter().collect::<Vec<_>>());
+        let views = views.iter().map(|view| view.picture(of_views)).collect();
+        Self { lit: lit.picture(exposure), maps, views, exposure, timings }
+    }
 }
 
 /// Largest coordinate: squares of sums of three stay finite in f32.
@@ -158,6 +181,7 @@ impl Frame {
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;
         check_size("image height", settings.image[1], LARGEST_SIZE)?;
+        settings.check_pixels()?;
         let constant = constant_bias(settings.size, settings.format);
         let bias = match settings.bias {
             Bias::Constant(Some(bias)) => bias,
@@ -293,6 +317,7 @@ impl View {
             forward: forward.as_vec3(),
             near: (towards.length() * CAMERA_NEAR_SHARE) as f32,
             scale: [(cotangent * f64::from(height) / f64::from(width)) as f32, cotangent as f32],
+            shift: [0.0; 2],
         })
     }
 }

@@ -194,6 +194,8 @@ fn bad_settings_are_refused() {
     refused("size-zero", &with(&["--size", "0"]), &["--size 0"]);
     refused("size-large", &with(&["--size", "100000"]), &["--size 100000", "16384"]);
     refused("image", &with(&["--image", "0x10"]), &["image width 0"]);
+    refused("samples", &with(&["--samples", "9"]), &["--samples 9 must be from 1 to 8"]);
+    refused("exposure", &with(&["--exposure", "-1"]), &["--exposure -1", "leave it out"]);
     refused("image-text", &with(&["--image", "10"]), &["960x720"]);
     let cube = |extra: &[&'static str]| [&with(&["--method", "cube"])[..], extra].concat();
     refused("lookup", &cube(&["--lookup", "vertex"]), &["lookup by vertex", "--lookup pixel"]);

@@ -4,7 +4,7 @@
 
 use dpsm::cpu;
 use dpsm::measure::{Bench, attribute, map_error, penumbra_error, shadow_error, truth_of};
-use dpsm::render::{Frame, FrameError, Method, Settings};
+use dpsm::render::{BACKGROUND, Frame, FrameError, Method, Settings, srgb};
 use dpsm::scalar::depth::dpsm_distance;
 use dpsm::scalar::float::Vec2 as Uv;
 use dpsm::scalar::paraboloid::dpsm_texture_to_disk;
@@ -158,7 +158,9 @@ fn empty_scenes_give_empty_frames_that_render_and_measure() {
             assert!(near.is_none_or(|near| light.near == near));
             assert!(far.is_none_or(|far| light.far == far));
             let rendering = cpu::render(&frame).unwrap();
-            assert!(rendering.lit.pixels.iter().all(|pixel| *pixel == [0, 0, 0, 255]));
+            let grey = srgb(BACKGROUND);
+            let background = [grey, grey, grey, 255];
+            assert!(rendering.lit.pixels.iter().all(|pixel| *pixel == background));
             let (maps, truth) = (rendering.maps.unwrap(), truth_of(&frame));
             assert!(maps.depths.iter().all(|depth| *depth == 1.0));
             let bench = Bench::new(&frame, &maps, &truth);
@@ -214,6 +216,8 @@ fn holes_of_a_mask_are_holes_of_the_map() {
 #[test]
 fn wholly_transparent_meshes_are_not_there_and_wholly_opaque_ones_are_like_unmasked_ones() {
     let render = |more: Option<Mesh>, method| {
+        // darker than the floor: the light sees both face-on
+        let more = more.map(|mesh| Mesh { albedo: Vec3::splat(0.5), ..mesh });
         let meshes = [square("floor", -2.0, 9.0)].into_iter().chain(more).collect();
         let settings = Settings { far: Some(20.0), views: true, method, ..settings() };
         let rendering = cpu::render(&frame(meshes, settings).unwrap()).unwrap();

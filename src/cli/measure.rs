@@ -8,7 +8,7 @@ use dpsm::measure::{
     self, Bench, MapError, PenumbraError, PictureError, Point, SeenError, ShadowError, SoftError,
     Source,
 };
-use dpsm::render::{Filter, Frame, Lookup, Projection};
+use dpsm::render::{Filter, Frame, Projection, Settings};
 use dpsm::scalar::maps::DepthMaps;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
@@ -89,7 +89,7 @@ pub fn prepare(
 
 /// The scene's name and frame, where no image is rendered.
 pub fn framed(setup: &SetupArguments) -> Result<(String, Frame), CliError> {
-    setup.frame(IMAGE, Lookup::Pixel, false)
+    setup.frame(Settings { image: IMAGE, ..Settings::default() })
 }
 
 /// A bar on stderr, where that is a terminal.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dpsm::gpu::Device;
-use dpsm::render::{Frame, Lookup, Rendering};
+use dpsm::render::{Frame, Lookup, Rendering, Settings};
 use dpsm::scene;
 
 use super::output::{Outputs, print};
@@ -27,6 +27,13 @@ pub struct RenderArguments {
     /// Width and height of the picture
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "960x720")]
     image: [u32; 2],
+    /// N x N samples a pixel, each with a shadow test of its own: 1 to 8
+    #[arg(long, value_name = "N", default_value_t = Settings::default().samples)]
+    samples: u32,
+    /// The factor on linear light; by default such that at most 0.5% of the pixels are too bright to
+    /// show, and 2 at most
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    exposure: Option<f32>,
     /// Also write the shadow maps and what the light sees of each hemisphere or face
     #[arg(long)]
     maps: bool,
@@ -75,7 +82,9 @@ pub fn framed(arguments: &RenderArguments) -> Result<(String, Frame), CliError> 
         LookupName::Pixel => Lookup::Pixel,
         LookupName::Vertex => Lookup::Vertex,
     };
-    arguments.setup.frame(arguments.image, lookup, arguments.maps)
+    let RenderArguments { image, samples, exposure, maps: views, .. } = *arguments;
+    let base = Settings { image, lookup, samples, exposure, views, ..Settings::default() };
+    arguments.setup.frame(base)
 }
 
 /// `dpsm render`.
@@ -99,6 +108,7 @@ fn picture(
     outputs.add_picture(output, &rendering.lit)?;
     companions(frame, &rendering, output, outputs)?;
     let mut report = format!("{scene}: {} triangles\n", frame.triangles.len());
+    let _ = writeln!(report, "  --exposure {}", rendering.exposure);
     for (pass, time) in &rendering.timings {
         let _ = writeln!(report, "  {pass:<12}{:9.3} ms", time.as_secs_f64() * 1e3);
     }

@@ -6,9 +6,7 @@ use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
 use dpsm::plan::Plan;
-use dpsm::render::{
-    Bias, Filter, Format, Frame, Kernel, Level, Lookup, Method, Passes, Settings, Taps,
-};
+use dpsm::render::{Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Taps};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Light, Options, Scene};
 use dpsm::{cpu, render};
@@ -321,13 +319,9 @@ impl SetupArguments {
         })
     }
 
-    /// Opens the scene and makes the frame; warnings go to stderr.
-    pub fn frame(
-        &self,
-        image: [u32; 2],
-        lookup: Lookup,
-        views: bool,
-    ) -> Result<(String, Frame), CliError> {
+    /// Opens the scene and makes the frame; warnings go to stderr. The picture's settings, lookup
+    /// and views are those of `base`.
+    pub fn frame(&self, base: Settings) -> Result<(String, Frame), CliError> {
         let settings = Settings {
             size: self.size,
             format: match self.format {
@@ -351,14 +345,12 @@ impl SetupArguments {
                 PassesName::Atlas => Passes::Atlas,
                 PassesName::Multiview => Passes::Multiview,
             },
-            lookup,
             sampling: match (self.filter, self.linear_taps) {
                 (FilterName::Hardware, _) => Sampling::Linear,
                 (FilterName::Hard, _) | (_, false) => Sampling::Nearest,
                 (_, true) => Sampling::Linear,
             },
             filter: self.filter()?,
-            image,
             near: self.near,
             far: self.far,
             bias: match (self.bias, self.constant_bias) {
@@ -373,8 +365,7 @@ impl SetupArguments {
                 (BiasName::TexelCentreOrOwn, None) => Bias::TexelCentreOrOwn,
                 (BiasName::NoNormal, None) => Bias::WITHOUT_NORMAL,
             },
-            views,
-            ..Settings::default()
+            ..base
         };
         let scene = open(&self.scene, self.walls)?;
         let plan = self.plan.as_deref().map(|path| planned(path, &scene)).transpose()?;

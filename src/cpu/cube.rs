@@ -1,6 +1,6 @@
-//! A cube map's faces by the ports: their maps, and what the light sees of each.
+//! A cube map's faces by the ports.
 
-use super::{Visible, opaque, triangle, visible};
+use super::{opaque, triangle};
 use crate::render::{Frame, Vertex, float};
 use crate::scalar::cube::{dpsm_cube_outside, dpsm_cube_vertex};
 use crate::scalar::float::{Vec3, Vec4};
@@ -25,16 +25,6 @@ pub fn map_pass(frame: &Frame, face: u32, layer: &mut [f32]) {
             }
         });
     }
-}
-
-/// What the light sees through each texel of a face.
-pub(super) fn seen(frame: &Frame, face: u32) -> Vec<Visible> {
-    let (_, clip) = placed(frame, face);
-    let image = [frame.settings.map_size(); 2];
-    visible(&frame.triangles, &clip, image, frame.light.near, |index, fragment| {
-        let inside = (0.0..=1.0).contains(&fragment.depth);
-        (inside && opaque(frame, index, fragment)).then_some(-fragment.depth)
-    })
 }
 
 /// Every vertex in light space, and in the face's clip space.

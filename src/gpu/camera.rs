@@ -1,22 +1,25 @@
-//! The camera pass, the hemisphere views, and the whole rendering of a frame.
+//! The camera pass, and the whole rendering of a frame.
 
 use super::lookup::{camera_shader, camera_uniform, constants};
 use super::maps::ShadowMaps;
 use super::mesh::MeshBuffers;
 use super::passes::{depth_attachment, depth_state, light_words};
-use super::timer::{ALONE, render_writes};
+use super::timer::{ALONE, Stamps, render_writes};
 use super::{Device, GpuError};
-use crate::render::{Frame, Lookup, Picture, Projection, Rendering};
+use crate::render::{Frame, Linear, Lookup, Projection, Rendering};
 use crate::scalar::maps::{DepthMaps, Sampling};
 
-/// Format of the pictures: the attachment encodes sRGB.
-const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+/// Format of the pictures: linear light, as bright as it comes.
+const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+
+/// Bytes of a pixel in it.
+const PIXEL_BYTES: u32 = 16;
 
 /// Format of the camera's own depth buffer, reversed: 0 is infinitely far.
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Renders a frame: maps, lit image and, where the settings ask for them, a view of each
-/// hemisphere or face.
+/// hemisphere or face, which takes the processor's ray caster.
 pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
     check_image(device, frame.settings.image)?;
     let mesh = MeshBuffers::new(device, frame)?;
@@ -35,28 +38,16 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
         (Projection::Paraboloid, Lookup::Pixel) => ["pixel_lookup", "pixel_lookup_fragment"],
         (Projection::Paraboloid, Lookup::Vertex) => ["vertex_lookup", "vertex_lookup_fragment"],
     };
-    let pass = Pass { name: "camera", stages, reversed: true, image: frame.settings.image };
-    let (lit, time) = camera.draw(device, &pass, &mesh, 0)?;
+    let (lit, time) = camera.lit(device, stages, &mesh)?;
     timings.push(time);
-    let mut views = Vec::new();
-    if frame.settings.views {
-        let image = [frame.settings.map_size(); 2];
-        let stages = match projection {
-            Projection::Cube => ["cube_view", "cube_view_fragment"],
-            Projection::Paraboloid => ["view", "view_fragment"],
-        };
-        for (map, name) in (0..frame.light.hemispheres).zip(projection.names()) {
-            let pass = Pass { name: &format!("{name} view"), stages, reversed: false, image };
-            let (view, time) = camera.draw(device, &pass, &mesh, map)?;
-            views.push(view);
-            timings.push(time);
-        }
-    }
-    let stored = match frame.settings.views {
-        true => Some(maps.download(device, frame.settings.sampling)?),
-        false => None,
+    let (views, stored) = match frame.settings.views {
+        true => (
+            crate::cpu::views(frame, &mut timings),
+            Some(maps.download(device, frame.settings.sampling)?),
+        ),
+        false => (Vec::new(), None),
     };
-    Ok(Rendering { lit, maps: stored, views, timings })
+    Ok(Rendering::new(frame, &lit, &views, stored, timings))
 }
 
 /// Makes a frame's maps alone and reads them back.
@@ -79,55 +70,51 @@ fn check_image(device: &Device, image: [u32; 2]) -> Result<(), GpuError> {
     }
 }
 
-/// One colour pass.
-struct Pass<'a> {
-    name: &'a str,
-    /// Entry points of the vertex and of the fragment stage.
-    stages: [&'a str; 2],
-    /// Depth buffer with 1 near and 0 far.
-    reversed: bool,
-    /// Width and height.
-    image: [u32; 2],
-}
-
 /// What the camera passes bind.
 struct Camera<'a> {
     module: wgpu::ShaderModule,
-    uniform: wgpu::Buffer,
+    /// One for each sample of a pixel.
+    uniforms: Vec<wgpu::Buffer>,
     constants: [(&'static str, f64); 2],
     sampler: wgpu::Sampler,
     lights: wgpu::Buffer,
     maps: &'a ShadowMaps,
+    /// Width and height.
+    image: [u32; 2],
 }
+
+/// A pass's name and time.
+type Timing = (String, std::time::Duration);
 
 impl<'a> Camera<'a> {
     fn new(device: &Device, frame: &Frame, maps: &'a ShadowMaps) -> Result<Self, GpuError> {
         let module = camera_shader(device)?;
-        let uniform = camera_uniform(device, frame, &maps.lights[0])?;
+        let image = frame.settings.image;
+        let uniform = |place: &[f32; 2]| {
+            camera_uniform(device, frame, &frame.view.sampled(*place, image), &maps.lights[0])
+        };
+        let uniforms = frame.settings.places().iter().map(uniform).collect::<Result<_, _>>()?;
         let constants = constants(frame);
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
         let all: Vec<u32> = maps.lights.iter().flat_map(light_words).collect();
         let bytes = bytemuck::cast_slice(&all);
         let lights = device.upload("light bytes", bytes, wgpu::BufferUsages::STORAGE)?;
-        Ok(Self { module, uniform, constants, sampler, lights, maps })
+        Ok(Self { module, uniforms, constants, sampler, lights, maps, image })
     }
 
-    /// Draws all triangles with one pair of entry points and reads the picture back.
-    fn draw(
+    /// The mean of each pixel's samples, and the time of the first of them.
+    fn lit(
         &self,
         device: &Device,
-        &Pass { name, stages, reversed, image: [width, height] }: &Pass<'_>,
+        stages: [&str; 2],
         mesh: &MeshBuffers,
-        instance: u32,
-    ) -> Result<(Picture, (String, std::time::Duration)), GpuError> {
-        let (compare, clear) = match reversed {
-            true => (wgpu::CompareFunction::Greater, 0.0),
-            false => (wgpu::CompareFunction::Less, 1.0),
-        };
-        let pipeline = device.step(name, || self.pipeline(device, stages, compare))?;
+    ) -> Result<(Linear, Timing), GpuError> {
+        const NAME: &str = "camera";
+        let [width, height] = self.image;
+        let pipeline = device.step(NAME, || self.pipeline(device, stages))?;
         let target = |format, usage| {
             device.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(name),
+                label: Some(NAME),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
                 mip_level_count: 1,
                 sample_count: 1,
@@ -137,43 +124,52 @@ impl<'a> Camera<'a> {
                 view_formats: &[],
             })
         };
-        let (color, depth, group) = device.step(name, || {
+        let many = stages.contains(&"lights_fragment");
+        let (color, depth, groups) = device.step(NAME, || {
             let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
             let depth = target(DEPTH, wgpu::TextureUsages::empty());
-            let many = stages.contains(&"lights_fragment");
-            (color, depth, self.group(device, &pipeline, mesh, many))
+            let group = |uniform| self.group(device, &pipeline, uniform, mesh, many);
+            (color, depth, self.uniforms.iter().map(group).collect::<Vec<_>>())
         })?;
         let color_view = color.create_view(&Default::default());
         let depth_view = depth.create_view(&Default::default());
-        let time = device.time_warm(name, |encoder, stamps| {
+        let record = |group, encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some(name),
+                label: Some(NAME),
                 color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                     view: &color_view,
                     depth_slice: None,
                     resolve_target: None,
                     ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
                         store: wgpu::StoreOp::Store,
                     },
                 })],
-                depth_stencil_attachment: Some(depth_attachment(&depth_view, clear)),
+                depth_stencil_attachment: Some(depth_attachment(&depth_view, 0.0)),
                 timestamp_writes: render_writes(stamps, ALONE),
                 ..Default::default()
             });
             pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.draw(0..3 * mesh.triangles, instance..instance + 1);
-        })?;
-        Ok((picture(device, &color)?, time))
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..3 * mesh.triangles, 0..1);
+        };
+        let mut sum = Linear::empty(self.image);
+        let mut timing = None;
+        for group in &groups {
+            if timing.is_none() {
+                let record = |encoder: &mut _, stamps: Stamps<'_>| record(group, encoder, stamps);
+                timing = Some(device.time_warm(NAME, record)?);
+            } else {
+                let encoder = device.encode(NAME, |encoder| record(group, encoder, None))?;
+                device.submit(NAME, encoder)?;
+            }
+            sum.add(&linear(device, &color)?);
+        }
+        let nothing = || (NAME.into(), std::time::Duration::ZERO);
+        Ok((sum.divided(groups.len() as u32), timing.unwrap_or_else(nothing)))
     }
 
-    fn pipeline(
-        &self,
-        device: &Device,
-        [vertex, fragment]: [&str; 2],
-        compare: wgpu::CompareFunction,
-    ) -> wgpu::RenderPipeline {
+    fn pipeline(&self, device: &Device, [vertex, fragment]: [&str; 2]) -> wgpu::RenderPipeline {
         let compilation_options =
             wgpu::PipelineCompilationOptions { constants: &self.constants, ..Default::default() };
         device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -186,7 +182,7 @@ impl<'a> Camera<'a> {
                 buffers: &[],
             },
             primitive: Default::default(),
-            depth_stencil: Some(depth_state(DEPTH, compare)),
+            depth_stencil: Some(depth_state(DEPTH, wgpu::CompareFunction::Greater)),
             multisample: Default::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &self.module,
@@ -203,12 +199,13 @@ impl<'a> Camera<'a> {
         &self,
         device: &Device,
         pipeline: &wgpu::RenderPipeline,
+        uniform: &wgpu::Buffer,
         mesh: &MeshBuffers,
         many: bool,
     ) -> wgpu::BindGroup {
         let lights = wgpu::BindGroupEntry { binding: 7, resource: self.lights.as_entire_binding() };
         let mut entries = vec![
-            wgpu::BindGroupEntry { binding: 0, resource: self.uniform.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() },
             wgpu::BindGroupEntry {
                 binding: 1,
                 resource: wgpu::BindingResource::TextureView(&self.maps.view),
@@ -248,30 +245,40 @@ pub fn comparison_sampler(device: &Device, sampling: Sampling) -> Result<wgpu::S
     })
 }
 
-/// Reads a colour texture back.
-fn picture(device: &Device, texture: &wgpu::Texture) -> Result<Picture, GpuError> {
+/// Reads a colour texture back, band by band.
+fn linear(device: &Device, texture: &wgpu::Texture) -> Result<Linear, GpuError> {
     use wgpu::BufferUsages as Usage;
     let (width, height) = (texture.width(), texture.height());
-    let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let bytes = u64::from(row) * u64::from(height);
+    let row = (width * PIXEL_BYTES).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let band = (device.chunk_bytes / u64::from(row)).clamp(1, u64::from(height)) as u32;
+    let bytes = u64::from(row) * u64::from(band);
     let back = device.buffer("picture bytes", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
-    let encoder = device.encode("reading the picture", |encoder| {
-        encoder.copy_texture_to_buffer(
-            texture.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &back,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(row),
-                    rows_per_image: None,
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    for first in (0..height).step_by(band as usize) {
+        let rows = band.min(height - first);
+        let encoder = device.encode("reading the picture", |encoder| {
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo {
+                    origin: wgpu::Origin3d { x: 0, y: first, z: 0 },
+                    ..texture.as_image_copy()
                 },
-            },
-            texture.size(),
-        );
-    })?;
-    device.submit("reading the picture", encoder)?;
-    let data = device.read(&back, bytes)?;
-    let line = |line: &[u8]| -> Vec<[u8; 4]> { line[..width as usize * 4].as_chunks().0.to_vec() };
-    let pixels = data.chunks(row as usize).flat_map(line).collect();
-    Ok(Picture { width, height, pixels })
+                wgpu::TexelCopyBufferInfo {
+                    buffer: &back,
+                    layout: wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(row),
+                        rows_per_image: None,
+                    },
+                },
+                wgpu::Extent3d { width, height: rows, depth_or_array_layers: 1 },
+            );
+        })?;
+        device.submit("reading the picture", encoder)?;
+        let data = device.read(&back, u64::from(row) * u64::from(rows))?;
+        for line in data.chunks(row as usize) {
+            let line = &line[..(width * PIXEL_BYTES) as usize];
+            pixels.extend(bytemuck::pod_collect_to_vec::<u8, [f32; 4]>(line));
+        }
+    }
+    Ok(Linear { width, height, pixels })
 }

@@ -5,7 +5,7 @@ use super::maps::ShadowMaps;
 use super::passes::{light_words, shader, uniform_buffer};
 use super::timer::{ALONE, Stamps, render_writes};
 use super::{Device, GpuError};
-use crate::render::{AMBIENT, Bias, Filter, Frame, Projection, SPECULAR};
+use crate::render::{AMBIENT, Bias, Filter, Frame, Projection, SPECULAR, View};
 use crate::scalar::float::Vec3;
 use crate::scalar::light::DpsmLight;
 
@@ -29,13 +29,13 @@ pub fn camera_shader(device: &Device) -> Result<wgpu::ShaderModule, GpuError> {
     )
 }
 
-/// Its struct Camera.
+/// Its struct Camera, of one sample's view.
 pub fn camera_uniform(
     device: &Device,
     frame: &Frame,
+    view: &View,
     light: &DpsmLight<f32>,
 ) -> Result<wgpu::Buffer, GpuError> {
-    let view = &frame.view;
     let rows = [
         (view.eye, view.near),
         (view.right, view.scale[0]),
@@ -56,6 +56,9 @@ pub fn camera_uniform(
     let biases = [frame.bias, quantum, tolerance, settings.window(), cosine];
     words.extend(biases.map(f32::to_bits));
     words.extend(frame.filter_words());
+    words.extend(view.shift.map(f32::to_bits));
+    // a struct is as large as its alignment asks
+    words.resize(words.len().next_multiple_of(4), 0);
     uniform_buffer(device, &words)
 }
 
@@ -118,7 +121,7 @@ impl PointTests {
         maps: &ShadowMaps,
         points: &wgpu::Buffer,
     ) -> Result<PointTest, GpuError> {
-        let uniform = camera_uniform(device, frame, &maps.lights[0])?;
+        let uniform = camera_uniform(device, frame, &frame.view, &maps.lights[0])?;
         let sampler = comparison_sampler(device, frame.settings.sampling)?;
         let fragment = match frame.settings.method.projection() {
             Projection::Paraboloid => "test_fragment",

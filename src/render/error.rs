@@ -30,6 +30,9 @@ pub enum FrameError {
     /// An incidence that is none.
     #[error("the bias without a normal needs the cosine of an incidence from 0 to 1, not {0}")]
     Cosine(f32),
+    /// An exposure that leaves no light, or no number.
+    #[error("--exposure {0} must be a finite number above 0; leave it out to have one chosen")]
+    Exposure(f32),
     /// A bias that leaves no depth.
     #[error("bias {0} must be at least 0 and below 0.5, in units of depth")]
     Bias(f32),

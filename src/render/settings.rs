@@ -256,6 +256,11 @@ pub struct Settings {
     pub filter: Filter,
     /// Width and height of the lit image in pixels.
     pub image: [u32; 2],
+    /// Samples along a side of each pixel, `1..=MOST_SAMPLES`: each has a shadow test of its own,
+    /// and a pixel is their mean in linear light.
+    pub samples: u32,
+    /// The factor on linear light; by default what [`exposure`](super::exposure) finds.
+    pub exposure: Option<f32>,
     /// Near sphere's radius; by default a thousandth of far.
     pub near: Option<f32>,
     /// Far sphere's radius; by default just beyond the farthest vertex.
@@ -283,6 +288,8 @@ impl Default for Settings {
             sampling: Sampling::Nearest,
             filter: Filter::Single,
             image: [960, 720],
+            samples: 2,
+            exposure: None,
             near: None,
             far: None,
             bias: Bias::TexelCentre,
