@@ -28,6 +28,8 @@ pub mod link;
 #[cfg(feature = "scene")]
 pub mod measure;
 #[cfg(feature = "scene")]
+mod placement;
+#[cfg(feature = "scene")]
 pub mod plan;
 #[cfg(feature = "naga")]
 pub mod reflect;

@@ -320,6 +320,12 @@ impl View {
             shift: [0.0; 2],
         })
     }
+
+    /// The point that the camera looks at, as near as the near plane tells.
+    pub fn target(&self) -> Vec3 {
+        (self.eye.as_dvec3() + self.forward.as_dvec3() * (f64::from(self.near) / CAMERA_NEAR_SHARE))
+            .as_vec3()
+    }
 }
 
 /// The light space whose +z is `axis`: right, up, forward with right x up = forward.

@@ -589,3 +589,29 @@ fn csv_files_take_time_as_their_length_not_its_square() {
     // a tenth of a second; to count all lines before each again takes minutes
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }
+
+#[test]
+fn printed_light_camera_and_exposure_make_the_same_picture_again() {
+    let folder = folder("printed");
+    let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+                f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 1 5 8 4\nf 2 3 7 6\n";
+    std::fs::write(folder.join("cube.obj"), cube).unwrap();
+    let render = |output: &'static str, more: &[&str]| {
+        let given = ["render", "cube.obj", "--adapter", "cpu", "--image", "48x36", "-o", output];
+        let output = dpsm(&folder, &[&given[..], more].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let stdout = render("first.png", &[]);
+    let printed = stdout.lines().find(|line| line.contains("--light=")).unwrap();
+    let again = render("again.png", &printed.split_whitespace().collect::<Vec<_>>());
+    assert!(again.contains(printed), "{again}");
+    let [first, again] =
+        ["first.png", "again.png"].map(|name| image::open(folder.join(name)).unwrap().into_rgba8());
+    // the target is printed with six decimals
+    let apart = first.iter().zip(again.iter()).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+    assert!(apart <= first.len() / 1000, "{apart}");
+    let background = first.get_pixel(0, 0);
+    let object = first.pixels().filter(|pixel| *pixel != background).count();
+    assert!(object > 48 * 36 / 4, "{object} pixels of the object");
+}

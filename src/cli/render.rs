@@ -108,11 +108,21 @@ fn picture(
     outputs.add_picture(output, &rendering.lit)?;
     companions(frame, &rendering, output, outputs)?;
     let mut report = format!("{scene}: {} triangles\n", frame.triangles.len());
-    let _ = writeln!(report, "  --exposure {}", rendering.exposure);
+    let light = frame.light.position;
+    let light = option("light", [light.x, light.y, light.z]);
+    let [camera, target] = [("camera", frame.view.eye), ("look-at", frame.view.target())]
+        .map(|(name, point)| option(name, point.to_array()));
+    let _ = writeln!(report, "  {light} {camera} {target} --exposure {}", rendering.exposure);
     for (pass, time) in &rendering.timings {
         let _ = writeln!(report, "  {pass:<12}{:9.3} ms", time.as_secs_f64() * 1e3);
     }
     Ok(report)
+}
+
+/// An option of a point, ready to be pasted: up to six decimals, as f32 has no more to give.
+fn option(name: &str, point: [f32; 3]) -> String {
+    let [x, y, z] = point.map(|c| (f64::from(c) * 1e6).round() / 1e6);
+    format!("--{name}={x},{y},{z}")
 }
 
 /// Moves the outputs to their places and prints the report with their names.

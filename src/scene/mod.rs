@@ -17,7 +17,6 @@ mod load;
 mod mask;
 mod procedural;
 mod shapes;
-mod view;
 
 use std::path::{Path, PathBuf};
 
