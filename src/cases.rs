@@ -11,6 +11,7 @@ use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::hemisphere::DPSM_BACK;
 use crate::scalar::light::DpsmLight;
 use crate::scalar::ports::{Flat, PORTS, Word};
+use crate::scalar::shade::DpsmCorner;
 use domain::{Finite, Outside, all as any, finite, numbers, projected, sized, up_to, when};
 use values::*;
 
@@ -161,6 +162,23 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_lambert" => cases.each(&DIRECTIONS, any, |to_light| (unit, point(to_light))),
         "dpsm_highlight" => cases.each(&DIRECTIONS, any, |to_light| (unit, point(to_light), unit)),
+        "dpsm_shadow_terminator" => {
+            let third = Vec3::splat(1.0 / 3.0);
+            let corner = |position, normal| DpsmCorner { position, normal };
+            let [a, b, c] = [[1.0, 2.0, 3.0], [2.0, 2.0, 3.5], [1.5, 3.0, 2.0]].map(point);
+            let far = |p| up_to(60, p);
+            cases.each(&POINTS, far, |p| {
+                (point(p), third, corner(a, unit), corner(b, unit), corner(c, unit))
+            });
+            cases.named(&POINTS, ", a corner", far, |p| {
+                (point([1.0; 3]), third, corner(point(p), unit), corner(b, unit), corner(c, unit))
+            });
+            cases.each(&DIRECTIONS, any, |normal| {
+                let normal = point(normal);
+                let weights = point([0.0, 1.0, 0.0]);
+                (b, weights, corner(a, normal), corner(b, normal), corner(c, normal))
+            });
+        }
         _ => {
             bias::add(function, &mut cases);
             exact::add(function, &mut cases);

@@ -62,7 +62,9 @@ impl Records {
                 ("index", 1) => words.push(Word::Integer(rng.u32(0..15_000))),
                 // as many halvings as it has binary digits behind the first, evenly
                 ("path", 1) => words.push(Word::Integer(1 + (rng.u32(0..4095) >> rng.u32(0..12)))),
-                ("weights", 3) => words.extend([0; 3].map(|_| Word::Integer(rng.u32(0..9)))),
+                ("weights", 3) if integers => {
+                    words.extend([0; 3].map(|_| Word::Integer(rng.u32(0..9))))
+                }
                 ("pixel", 2) => words.extend([0; 2].map(|_| Word::Integer(rng.u32(..)))),
                 ("count", 1) => words.push(Word::Integer(rng.u32(1024..1 << 20))),
                 _ if integers => words.push(Word::Integer(rng.u32(0..2))),
@@ -148,6 +150,14 @@ impl Records {
                 }
                 ("a", 3) => corner_a.write(&mut words),
                 ("b", 3) => corner_b.write(&mut words),
+                ("weights", 3) => {
+                    let [s, t] = [rng.f32(), rng.f32()];
+                    let [s, t] = if s + t > 1.0 { [1.0 - s, 1.0 - t] } else { [s, t] };
+                    Vec3::new((1.0 - s) - t, s, t).write(&mut words);
+                }
+                ("a", 6) => (corner_a, unit(rng)).write(&mut words),
+                ("b", 6) => (corner_b, unit(rng)).write(&mut words),
+                ("c", 6) => (corner_c, unit(rng)).write(&mut words),
                 ("c", 3) => corner_c.write(&mut words),
                 ("triangle", 19) => {
                     let light = light(rng);

@@ -126,6 +126,7 @@ flat! {
     DpsmTriangle { first, second, third, plane, span }
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
+    DpsmCorner { position, normal }
     DpsmReceiver { plane, distance }
     DpsmKernel { axis, reach, hemisphere }
     DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
@@ -280,5 +281,5 @@ ports! {
     filter { dpsm_filter_reader, dpsm_filter_lookup }
     pcss { dpsm_pcss_tangent, dpsm_pcss_found, dpsm_pcss_width }
     lights { dpsm_lights_turn }
-    shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight }
+    shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight, dpsm_shadow_terminator }
 }

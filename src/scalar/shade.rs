@@ -2,6 +2,15 @@
 
 use super::float::{Float, Vec3};
 
+/// A corner of a triangle that is shaded smoothly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DpsmCorner<T> {
+    /// Where it is, in any space.
+    pub position: Vec3<T>,
+    /// Unit normal there, on the side that is lit.
+    pub normal: Vec3<T>,
+}
+
 /// Ambient light, plus diffuse and specular as far as the light is visible.
 pub fn dpsm_shade<T: Float>(
     ambient: Vec3<T>,
@@ -32,4 +41,19 @@ pub fn dpsm_highlight<T: Float>(normal: Vec3<T>, to_light: Vec3<T>, to_eye: Vec3
     let eighth = fourth * fourth;
     let sixteenth = eighth * eighth;
     sixteenth * sixteenth
+}
+
+/// Where the shadow test of a smoothly shaded triangle should be made: on the curved surface that
+/// the corners' normals suggest.
+pub fn dpsm_shadow_terminator<T: Float>(
+    p: Vec3<T>,
+    weights: Vec3<T>,
+    a: DpsmCorner<T>,
+    b: DpsmCorner<T>,
+    c: DpsmCorner<T>,
+) -> Vec3<T> {
+    // how far the point is below a corner's plane, as a number below 0
+    let below = |corner: DpsmCorner<T>| (p - corner.position).dot(corner.normal).min(T::lit(0.0));
+    let share = Vec3::new(weights.x * below(a), weights.y * below(b), weights.z * below(c));
+    p - (a.normal * share.x + b.normal * share.y + c.normal * share.z)
 }

@@ -1799,6 +1799,14 @@ fn dpsm_lights_turn(direction: vec3<f32>, light: DpsmLight) -> vec3<f32> {
 
 // dpsm::shade
 
+/// A corner of a triangle that is shaded smoothly.
+struct DpsmCorner {
+    /// Where it is, in any space.
+    position: vec3<f32>,
+    /// Unit normal there, on the side that is lit.
+    normal: vec3<f32>,
+}
+
 /// Ambient light, plus diffuse and specular as far as the light is visible.
 ///
 /// Domain: visibility in [0, 1], colours at least 0. Bound: 3 eps (ambient + diffuse + specular),
@@ -1839,4 +1847,33 @@ fn dpsm_highlight(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> 
     let eighth = fourth * fourth;
     let sixteenth = eighth * eighth;
     return sixteenth * sixteenth;
+}
+
+/// Where the shadow test of a smoothly shaded triangle should be made: on the curved surface that the
+/// corners' normals suggest, so that coarse triangles do not shadow one another by their edges.
+///
+/// p, moved by the weighted mean of what lifts it to the plane through each corner; unmoved where all
+/// three are below it. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, ch. 4.
+///
+/// p: a point of the triangle; weights: its barycentric coordinates, for a, b and c.
+/// Domain: coordinates up to 2^60, unit normals, weights in [0, 1] with the sum 1. Bound:
+/// eps (|p| + 9 D) each component, where D is the distance to the farthest corner.
+fn dpsm_shadow_terminator(
+    p: vec3<f32>,
+    weights: vec3<f32>,
+    a: DpsmCorner,
+    b: DpsmCorner,
+    c: DpsmCorner,
+) -> vec3<f32> {
+    // how far the point is below each plane, as a number below 0
+    let below = min(
+        vec3<f32>(
+            dot(p - a.position, a.normal),
+            dot(p - b.position, b.normal),
+            dot(p - c.position, c.normal),
+        ),
+        vec3<f32>(),
+    );
+    let share = weights * below;
+    return p - (share.x * a.normal + share.y * b.normal + share.z * c.normal);
 }

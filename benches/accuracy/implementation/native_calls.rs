@@ -3,6 +3,7 @@ structs! {
     DpsmBlockers { tangents, count, unmapped }
     DpsmCasterFragment { depth, keep }
     DpsmCasterVertex { clip, hemisphere_value }
+    DpsmCorner { position, normal }
     DpsmHull { a, b, c }
     DpsmKernel { axis, reach, hemisphere }
     DpsmLight { position, near, right, far, up, guard, forward, size, rectangle, first_layer, placement, hemispheres, padding }
@@ -119,4 +120,5 @@ calls! {
     dpsm_blend(Vec3<f32>, Vec3<f32>, f32)
     dpsm_lambert(Vec3<f32>, Vec3<f32>)
     dpsm_highlight(Vec3<f32>, Vec3<f32>, Vec3<f32>)
+    dpsm_shadow_terminator(Vec3<f32>, Vec3<f32>, DpsmCorner, DpsmCorner, DpsmCorner)
 }

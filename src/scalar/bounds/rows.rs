@@ -624,5 +624,22 @@ shade {
     dpsm_highlight Absolute
         |i| i.chunks(3).all(|v| (length(v) - 1.0).abs() <= 8.0 * EPS),
         |_, r, a| absolute(r, a, 470.0, 1.0);
+    dpsm_shadow_terminator Absolute
+        |i| {
+            // p, weights, three times position and normal
+            let unit = |v: &[f64]| (length(v) - 1.0).abs() <= 8.0 * EPS;
+            let corner = |c: &[f64]| largest(&c[..3]) <= two(60) && unit(&c[3..]);
+            let sum: f64 = i[3..6].iter().sum();
+            largest(&i[..3]) <= two(60)
+                && within(&i[3..6], 0.0, 1.0)
+                && (sum - 1.0).abs() <= 8.0 * EPS
+                && i[6..].chunks(6).all(corner)
+        },
+        |i, r, a| {
+            let p = &i[..3];
+            let away = |c: &[f64]| length(&[p[0] - c[0], p[1] - c[1], p[2] - c[2]]);
+            let farthest = i[6..].chunks(6).map(away).fold(0.0, f64::max);
+            absolute(r, a, 1.0, length(p) + 9.0 * farthest)
+        };
 }
 }
