@@ -22,7 +22,15 @@ fn frame(position: Option<Vec3>, settings: Settings) -> Result<Frame, FrameError
 fn settings(filter: Filter) -> Settings {
     // the same exposure for all, so that a mean of pictures is one of light
     let exposure = Some(1.0);
-    Settings { size: 128, image: [96, 72], samples: 1, exposure, filter, ..Settings::default() }
+    Settings {
+        size: 128,
+        image: [96, 72],
+        samples: 1,
+        exposure,
+        terminator: false,
+        filter,
+        ..Settings::default()
+    }
 }
 
 fn taps(kernel: Kernel) -> Taps {

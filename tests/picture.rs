@@ -15,7 +15,7 @@ use dpsm::render::{
 use dpsm::scalar::float::Vec2;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scalar::paraboloid::dpsm_disk_to_texture;
-use dpsm::scene::{self, Camera, Options, Scene};
+use dpsm::scene::{self, Camera, Mesh, Options, Scene};
 use dpsm::{cpu, gpu};
 use glam::{DVec3, Vec3, vec3};
 use scenes::square;
@@ -258,4 +258,84 @@ fn places_beyond_the_rim_show_no_surface() {
     }
     // a surface may have that colour by chance
     assert!(inside < views[0].pixels.len() / 1000, "{inside}");
+}
+
+/// A coarse unit sphere with the sphere's own normals, lit from the side and seen from the front.
+fn coarse_sphere(terminator: bool) -> Frame {
+    const SIDES: u32 = 12;
+    let at = |ring: u32, side: u32| {
+        let step = std::f32::consts::PI / SIDES as f32;
+        let (polar, around) = (ring as f32 * step, 2.0 * side as f32 * step);
+        vec3(polar.sin() * around.sin(), polar.cos(), polar.sin() * around.cos())
+    };
+    let cells = |rings| (0..rings).flat_map(|ring| (0..SIDES).map(move |side| (ring, side)));
+    let index = |ring: u32, side: u32| ring * SIDES + side % SIDES;
+    let positions: Vec<Vec3> = cells(SIDES + 1).map(|(ring, side)| at(ring, side)).collect();
+    let quads = cells(SIDES).flat_map(|(ring, side)| {
+        let [a, b] = [index(ring, side), index(ring, side + 1)];
+        let [c, d] = [index(ring + 1, side), index(ring + 1, side + 1)];
+        [[a, c, d], [a, d, b]]
+    });
+    let sphere = Mesh {
+        name: "sphere".into(),
+        triangles: quads.collect(),
+        normals: positions.clone(),
+        positions,
+        albedo: Vec3::splat(0.5),
+        ..Mesh::default()
+    };
+    let (lights, camera, warnings) = Default::default();
+    let scene = Scene { name: "made".into(), meshes: vec![sphere], lights, camera, warnings };
+    let camera =
+        Camera { eye: vec3(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y, vertical_fov: 0.6 };
+    let settings = Settings { size: 1024, image: [320, 320], samples: 1, terminator, ..settings() };
+    Frame::new(&scene, vec3(4.0, 3.0, 2.0), Vec3::NEG_Y, false, &camera, settings).unwrap()
+}
+
+/// Pixels that the smooth sphere turns to the light by more than 6 degrees but that are dark.
+fn falsely_dark(frame: &Frame, lit: &Picture) -> usize {
+    let light = vec3(4.0, 3.0, 2.0);
+    let turned = frame.light;
+    let world = |v: dpsm::scalar::float::Vec3<f32>| {
+        let [right, up, forward] =
+            [turned.right, turned.up, turned.forward].map(|row| vec3(row.x, row.y, row.z));
+        light + right * v.x + up * v.y + forward * v.z
+    };
+    let dark = |(pixel, seen): (&[u8; 4], Option<cpu::SurfacePoint>)| {
+        seen.is_some_and(|seen| {
+            let normal = world(seen.p).normalize();
+            let cosine = normal.dot((light - world(seen.p)).normalize());
+            // with no direct light at all
+            cosine > 0.1 && pixel[0] <= srgb(0.5 * (AMBIENT + 0.3 * cosine))
+        })
+    };
+    lit.pixels.iter().zip(cpu::surface_points(frame)).filter(|of| dark(*of)).count()
+}
+
+#[test]
+fn coarse_sphere_has_a_smooth_shadow_where_the_terminator_is_moved() {
+    let [moved, unmoved] = [true, false].map(coarse_sphere);
+    let port = cpu::render(&moved).unwrap().lit;
+    let flat = cpu::render(&unmoved).unwrap().lit;
+    let (few, many) = (falsely_dark(&moved, &port), falsely_dark(&unmoved, &flat));
+    println!("{few} pixels falsely dark, {many} without");
+    assert!(few < many / 6 && many > 150, "{few} {many}");
+    let Some(device) = device() else { return };
+    let adapter = gpu::render(&device, &moved).unwrap().lit;
+    let off = apart(&adapter, &port, 2);
+    println!("{off} pixels apart");
+    assert!(off < many / 10, "{off}");
+}
+
+#[test]
+fn flat_meshes_look_the_same_wherever_the_shadow_is_tested() {
+    let scene = scene::open("cornell", &Options { walls: 1 }).unwrap();
+    let (light, camera) = (scene.default_light().position, scene.camera.unwrap());
+    let [moved, unmoved] = [true, false].map(|terminator| {
+        let settings = Settings { terminator, ..settings() };
+        let frame = Frame::new(&scene, light, Vec3::NEG_Y, false, &camera, settings).unwrap();
+        cpu::render(&frame).unwrap().lit
+    });
+    // rounding alone, at shadow edges
+    assert!(apart(&moved, &unmoved, 2) <= moved.pixels.len() / 1000);
 }

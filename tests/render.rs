@@ -27,7 +27,15 @@ fn settings() -> Settings {
     // one sample, in the pixel's centre, is what `surface_points` sees
     let exposure = Some(1.0);
     let image = [SIDE, SIDE];
-    Settings { size: 256, image, samples: 1, exposure, views: true, ..Settings::default() }
+    Settings {
+        size: 256,
+        image,
+        samples: 1,
+        exposure,
+        terminator: false,
+        views: true,
+        ..Settings::default()
+    }
 }
 
 fn levels_apart(a: [u8; 4], b: [u8; 4]) -> u8 {
@@ -37,7 +45,8 @@ fn levels_apart(a: [u8; 4], b: [u8; 4]) -> u8 {
 #[test]
 fn ports_render_the_committed_pictures() {
     for name in ["brabec-room", "brabec-ceiling"] {
-        let shown = Settings { samples: 2, exposure: None, views: false, ..settings() };
+        let shown =
+            Settings { samples: 2, exposure: None, terminator: true, views: false, ..settings() };
         let lit = cpu::render(&frame(name, shown)).unwrap().lit;
         let path = format!("{}/tests/golden/{name}.png", env!("CARGO_MANIFEST_DIR"));
         if std::env::var_os("DPSM_WRITE_GOLDEN").is_some() {

@@ -34,6 +34,10 @@ pub struct RenderArguments {
     /// show, and 2 at most
     #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
     exposure: Option<f32>,
+    /// Test shadows on the flat triangles, not on the curved surface that the normals suggest: so the
+    /// edges of coarse meshes show in their shadows
+    #[arg(long)]
+    no_terminator: bool,
     /// Also write the shadow maps and what the light sees of each hemisphere or face
     #[arg(long)]
     maps: bool,
@@ -83,7 +87,9 @@ pub fn framed(arguments: &RenderArguments) -> Result<(String, Frame), CliError> 
         LookupName::Vertex => Lookup::Vertex,
     };
     let RenderArguments { image, samples, exposure, maps: views, .. } = *arguments;
-    let base = Settings { image, lookup, samples, exposure, views, ..Settings::default() };
+    let terminator = !arguments.no_terminator;
+    let base =
+        Settings { image, lookup, samples, exposure, terminator, views, ..Settings::default() };
     arguments.setup.frame(base)
 }
 

@@ -92,10 +92,12 @@ fn lights_pass(
     let taps = frame.taps();
     let to_world = |v: scalar::Vec3<f32>| light.right * v.x + light.up * v.y + light.forward * v.z;
     let first = Vec2::new(1.0, 0.0);
+    let eye = dpsm_to_light(float(view.eye), *light);
     color(&seen, settings.image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let world = light.position + to_world(surface.p);
-        let plane = to_world(frame.light_normal(triangle));
+        let tested = light.position + to_world(surface.receiver(frame, eye));
+        let plane = to_world(surface.plane);
         let normal = to_world(surface.normal);
         let shaded = |own: &Frame, maps: &DepthMaps| {
             let light = own.light;
@@ -105,10 +107,11 @@ fn lights_pass(
                 Filter::Disk(Taps { kernel: Kernel::Tangent(tangent), .. }) => tangent * p.length(),
                 _ => 0.0,
             };
-            let share = dpsm_lights_visibility(maps, world, plane, light, taps, radius, first);
+            let share = dpsm_lights_visibility(maps, tested, plane, light, taps, radius, first);
             let eye = dpsm_to_light(float(view.eye), light);
             let normal = dpsm_lights_turn(normal, light);
-            Surface { p, normal, albedo: surface.albedo }.shade(own, eye, share)
+            let plane = dpsm_lights_turn(plane, light);
+            Surface { p, plane, normal, ..surface }.shade(own, eye, share)
         };
         let others = more.iter().map(|(own, maps)| shaded(own, maps));
         let sum = others.fold(shaded(frame, maps), |sum, part| sum + part);
@@ -131,7 +134,7 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps, sample: &View) -> Linear {
     color(&seen, settings.image, |triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let visibility = match settings.lookup {
-            Lookup::Pixel => frame.visibility(maps, surface.p, frame.light_normal(triangle)),
+            Lookup::Pixel => frame.visibility(maps, surface.receiver(frame, eye), surface.plane),
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {

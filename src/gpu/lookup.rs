@@ -57,6 +57,7 @@ pub fn camera_uniform(
     words.extend(biases.map(f32::to_bits));
     words.extend(frame.filter_words());
     words.extend(view.shift.map(f32::to_bits));
+    words.push(frame.settings.terminator.into());
     // a struct is as large as its alignment asks
     words.resize(words.len().next_multiple_of(4), 0);
     uniform_buffer(device, &words)

@@ -259,6 +259,9 @@ pub struct Settings {
     /// Samples along a side of each pixel, `1..=MOST_SAMPLES`: each has a shadow test of its own,
     /// and a pixel is their mean in linear light.
     pub samples: u32,
+    /// The lit image's shadows are tested on the curved surface that the vertices' normals suggest,
+    /// `dpsm_shadow_terminator`, in lookups by pixel.
+    pub terminator: bool,
     /// The factor on linear light; by default what [`exposure`](super::exposure) finds.
     pub exposure: Option<f32>,
     /// Near sphere's radius; by default a thousandth of far.
@@ -289,6 +292,7 @@ impl Default for Settings {
             filter: Filter::Single,
             image: [960, 720],
             samples: 2,
+            terminator: true,
             exposure: None,
             near: None,
             far: None,
