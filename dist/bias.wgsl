@@ -164,25 +164,6 @@ fn dpsm_texture_to_disk(st: vec2<f32>, guard: f32) -> vec2<f32> {
 
 // dpsm::edge
 
-/// The largest component's magnitude.
-///
-/// Domain: any v without NaN. Exact.
-fn dpsm_edge_largest(v: vec3<f32>) -> f32 {
-    return max(max(abs(v.x), abs(v.y)), abs(v.z));
-}
-
-/// The unit vector along v; zero for vectors below 2^-100.
-///
-/// Domain: components up to 2^126. Bound: 11 eps absolute, each component.
-fn dpsm_edge_unit(v: vec3<f32>) -> vec3<f32> {
-    let largest = dpsm_edge_largest(v);
-    if largest < 0x1p-100 {
-        return vec3<f32>();
-    }
-    let scaled = v / largest;
-    return scaled / length(scaled);
-}
-
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
 ///
 /// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
@@ -259,21 +240,25 @@ const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 
-/// The receiver at a light-space point with a geometric normal of any length, of either side. It
-/// must be the triangle's own: an interpolated one is of another plane. A zero normal gives the
-/// plane that faces the light.
+/// The square of the shortest normal that is one: 2^-120.
+const DPSM_BIAS_NORMAL: f32 = 0x1p-120;
+
+/// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
+/// or one shorter than 2^-60, gives the plane that faces the light.
 ///
-/// Domain: largest |component| of p in [2^-51, 2^62] or p = 0, of the normal 0 or in
-/// [2^-100, 2^126]. Bound: normal 11 eps absolute, each component; height 14 eps |p| absolute;
-/// distance 6 eps relative.
+/// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
+/// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
+/// p = 0, normal no longer than 2^62. Bound: normal 11 eps absolute, each component; height
+/// 14 eps |p| absolute; distance 6 eps relative.
 fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
     let distance = length(p);
-    let given = dpsm_edge_unit(normal);
-    if dot(given, given) < 0.5 {
-        return DpsmReceiver(vec4<f32>(p / max(distance, DPSM_SMALLEST), distance), distance);
-    }
-    let height = dot(given, p);
-    return DpsmReceiver(vec4<f32>(select(given, -given, height < 0.0), abs(height)), distance);
+    let square = dot(normal, normal);
+    let known = square >= DPSM_BIAS_NORMAL;
+    let along = select(p, normal, known);
+    let size = select(max(distance, DPSM_SMALLEST), sqrt(square), known);
+    let unit = along * (1.0 / size);
+    let height = select(distance, dot(unit, p), known);
+    return DpsmReceiver(vec4<f32>(select(unit, -unit, height < 0.0), abs(height)), distance);
 }
 
 /// The cosine of a receiver's incidence.

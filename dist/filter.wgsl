@@ -395,17 +395,111 @@ fn dpsm_kernel_turn(direction: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
 }
 
+/// Cosine and sine of the golden section of a right angle, between one ring of four taps and the
+/// next.
+const DPSM_KERNEL_QUARTER: vec2<f32> = vec2<f32>(0.5646348864175503, 0.8253408053890465);
+
+/// Taps in rings of four, a right angle apart: how many rings.
+///
+/// Domain: count <= 2^31. Exact.
+fn dpsm_kernel_rings(count: u32) -> u32 {
+    return max((count + 3u) / 4u, 1u);
+}
+
+/// The direction of the first tap of the next ring: turned by the golden section of a right angle.
+///
+/// Domain: a unit vector. Bound: 2.5 eps absolute, each component; 4 eps each time in length and
+/// angle.
+fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
+    let c = DPSM_KERNEL_QUARTER.x;
+    let s = DPSM_KERNEL_QUARTER.y;
+    return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
+}
+
+// dpsm::plane
+
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 128 eps (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+
+/// A receiver in its map, moved along its normal.
+struct DpsmPlane {
+    /// Disk coordinates of the moved receiver, in the receiver's own hemisphere.
+    uv: vec2<f32>,
+    /// What n . d gains for each radian along u and v: the lean of the plane, as long as the sine of
+    /// the incidence.
+    lean: vec2<f32>,
+    /// n . d of the moved plane at uv, and all that it may be too small by.
+    facing: f32,
+    /// The cosine of the incidence.
+    cosine: f32,
+    /// The angle of a texel there.
+    pitch: f32,
+    /// The plane's height above the light, in units of far - near as all depths are; less for a
+    /// receiver beyond far.
+    height: f32,
+    /// The moved receiver's distance in the same units, at most far's.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in these units, with all that it may be too near
+    /// by.
+    near: f32,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+}
+
+/// The receiver moved towards the light along its normal by `shift` texels times the sine of its
+/// incidence.
+///
+/// p, receiver: a light-space point and its dpsm_receiver; quantum, tolerance: as for
+/// dpsm_bias_slack. Domain: largest |component| of p in [2^-51, 2^60] or p = 0, 0 <= shift <= 2,
+/// far <= 2^60. Bound: docs/plane.md.
+fn dpsm_plane(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    shift: f32,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> DpsmPlane {
+    let hemisphere = dpsm_hemisphere(p);
+    let n = dpsm_flip(receiver.plane.xyz, hemisphere);
+    let l = max(receiver.distance, DPSM_SMALLEST);
+    let sum = l + abs(p.z);
+    let inverse = 1.0 / (l * sum);
+    let uv = p.xy * (inverse * l);
+    let cosine = min(receiver.plane.w * (inverse * sum), 1.0);
+    let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+    let width = dpsm_texel_width(light.size, light.guard);
+    let pitch = width * (sum * (inverse * sum));
+    let lean = n.xy - uv * (n.z + cosine);
+    let moved = shift * sine;
+    let inside = min(light.far * (inverse * sum), 1.0);
+    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let range = 1.0 / (grown * (light.far - light.near));
+    return DpsmPlane(
+        uv - lean * (moved * width),
+        lean,
+        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine,
+        pitch,
+        receiver.plane.w * inside * range,
+        l * inside * range * (1.0 - moved * pitch * cosine),
+        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        hemisphere,
+    );
+}
+
 // dpsm::filter
 /// Filters: the share of the light that a receiver gets, averaged over a kernel of directions.
 ///
-/// dpsm_filter_disk is the one to use: a cone around the receiver's direction, whose taps go on
-/// across the seam and each compare the receiver's own plane in the tap's direction, so that no
-/// kernel needs a bias of its own. The others are what it is measured against: the hardware's
-/// 2 x 2 comparison, k x k texels of one map (the naive form), the seam crossed by mirroring, and
-/// taps projected one by one (Osman, Bukowski, McEvoy 2006, section 3).
+/// dpsm_filter_disk is the one to use where a kernel's size is fixed: a cone around the receiver's
+/// direction, whose taps go on across the seam, compare the receiver's own plane, and count as
+/// shadow only what lies in a bias cone towards the light (Burley 2006), so that no kernel needs a
+/// bias of its own. The others are what it is measured against: the hardware's 2 x 2 comparison,
+/// k x k texels of one map (the naive form), the seam crossed by mirroring, and taps projected one
+/// by one (Osman, Bukowski, McEvoy 2006, section 3).
 /// A hemispherical light's missing half is in shadow by definition, tap by tap.
-/// The sampler takes nearest texels for hard taps, 2 x 2 for linear ones; it compares with
-/// less-equal. What is averaged, and how far it is off: docs/filter.md.
+/// What is averaged, and how far it is off: docs/filter.md.
 
 /// A tap of one texel, compared along the texel's centre.
 const DPSM_TAP_HARD: u32 = 0u;
@@ -567,37 +661,366 @@ fn dpsm_filter_pcf(
     return select(0.0, sum / f32(side * side), at.mapped);
 }
 
-/// The disk that stands for a cone, filled with Vogel's spiral: dpsm_kernel's taps, even around the
-/// receiver's direction.
+/// How far along its normal a receiver is moved for a kernel, in texels times the sine of its
+/// incidence.
+const DPSM_FILTER_SHIFT: f32 = 0.45;
+
+/// How much nearer than the plane, in texels, is still lit.
+const DPSM_FILTER_OWN: f32 = 0.5;
+
+/// What a receiver at grazing incidence is to be moved by in addition: what half a texel's diagonal
+/// is more than the shift, rounded up.
+const DPSM_FILTER_GRAZING: f32 = 0.258;
+
+/// The smallest kernel's half-angle in texels: half a texel's diagonal.
+const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+
+/// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
+/// lie within it.
+const DPSM_FILTER_CONE: f32 = 0.1;
+
+/// The bias cone's half-angle in those of the light, where that is more.
+const DPSM_FILTER_WIDER: f32 = 1.3333334;
+
+/// Largest tangent of a kernel, 45 degrees: wider ones would need more taps than any have.
+const DPSM_FILTER_WIDEST: f32 = 1.0;
+
+/// What one tap in shadow adds to a sum in which a lit one adds 1: more than there are taps.
+const DPSM_FILTER_DARK: f32 = 1024.0;
+
+/// What all taps of a kernel share: where they read, and what they compare.
 ///
-/// rotation: unit vector of the first tap, from dpsm_kernel_rotation or (1, 0).
-/// Domain: as for dpsm_kernel and dpsm_receiver.
+/// Taps come in rings of four: at an offset (x, y) in the unit disk, and at the same turned by one,
+/// two and three right angles. Places are disk coordinates with v pointing down, as texture
+/// coordinates do.
+struct DpsmDisk {
+    /// The receiver's place.
+    place: vec2<f32>,
+    /// What the place gains by x; by y it gains (y, -x) of that.
+    right: vec2<f32>,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+    /// n . d of the receiver's plane at the receiver, with all that it may be too small by.
+    facing: f32,
+    /// What that gains by x and y.
+    lean: vec2<f32>,
+    /// What it may gain by x^2 + y^2.
+    rest: f32,
+    /// The plane's height, as dpsm_plane gives it.
+    height: f32,
+    /// The receiver's distance, as dpsm_plane gives it.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in their units.
+    near: f32,
+    /// How much nearer than the receiver a blocker must be for each unit of the tap's radius.
+    steep: f32,
+    /// How far from the receiver's direction any blocker counts, in the kernel's radii.
+    least: f32,
+}
+
+/// The disk of a kernel around a receiver.
+///
+/// at: dpsm_plane of DPSM_FILTER_SHIFT; tangent: of the kernel's half-angle; light_tangent: of the
+/// light's, as the receiver sees it; rotation: a unit vector, of the first tap. Domain: as for
+/// dpsm_plane, 2^-24 <= tangent <= 1, 0 <= light_tangent <= 2^24. Bound: docs/filter.md.
+fn dpsm_filter_cone(
+    at: DpsmPlane,
+    tangent: f32,
+    light_tangent: f32,
+    rotation: vec2<f32>,
+) -> DpsmDisk {
+    let square = dot(at.uv, at.uv);
+    let r = sqrt(square);
+    let radius = tangent * (0.5 + 0.5 * square);
+    let across = rotation * radius;
+    let aside = vec2<f32>(-rotation.y, rotation.x);
+    let sine = length(at.lean);
+    // the nearest texel's centre lies up to half a diagonal away
+    let texel = DPSM_FILTER_SMALLEST * at.pitch;
+    let rise = max(DPSM_FILTER_OWN * at.cosine, DPSM_FILTER_GRAZING * sine) + texel * sine;
+    // the lean is to first order in the disk; this bounds the rest (docs/filter.md)
+    let reach = tangent + texel;
+    let within = 1.0 / (1.0 - 0.5 * min(r * reach, 1.0));
+    let curved = reach * reach * (0.5 * r + 0.25 * reach) * (within * within * within);
+    return DpsmDisk(
+        vec2<f32>(at.uv.x, -at.uv.y),
+        vec2<f32>(across.x, -across.y),
+        at.hemisphere,
+        at.facing + rise * at.pitch,
+        vec2<f32>(dot(at.lean, rotation), dot(at.lean, aside)) * tangent,
+        sine * curved,
+        at.height,
+        at.distance,
+        at.near,
+        tangent / max(DPSM_FILTER_CONE, DPSM_FILTER_WIDER * light_tangent),
+        texel / tangent,
+    );
+}
+
+/// A map in its texture: the coordinates of its middle, and what one unit of the disk is there.
+///
+/// Domain: hemisphere 0 or 1. Bound: middle as for dpsm_light_coordinates, unit 4.5 eps relative.
+fn dpsm_filter_map(light: DpsmLight, hemisphere: u32) -> vec4<f32> {
+    let middle = dpsm_light_coordinates(light, hemisphere, vec2<f32>(0.5));
+    let extent = select(vec2<f32>(1.0), light.rectangle.zw, light.placement == DPSM_ATLAS);
+    return vec4<f32>(middle, extent * (0.5 / (1.0 + light.guard)));
+}
+
+/// Where four taps of a disk read: texture coordinates, and in which map.
+struct DpsmFour {
+    s: vec4<f32>,
+    t: vec4<f32>,
+    /// Which lie beyond the rim, and read the other hemisphere's map.
+    crossed: vec4<bool>,
+}
+
+/// Where four taps read: those beyond the rim continue in the other map, at the inverse of their
+/// radius.
+///
+/// offset: of the first in the unit disk; own: the receiver's map; other: the middle of the other one
+/// along x. Domain: as for dpsm_filter_cone. Bound: docs/filter.md.
+fn dpsm_filter_places(
+    disk: DpsmDisk,
+    own: vec4<f32>,
+    other: f32,
+    offset: vec2<f32>,
+) -> DpsmFour {
+    let step = dpsm_filter_step(disk, offset);
+    let u = disk.place.x + vec4<f32>(step.x, step.y, -step.x, -step.y);
+    let v = disk.place.y + vec4<f32>(step.y, -step.x, -step.y, step.x);
+    let far = u * u + v * v;
+    let inward = 1.0 / max(far, vec4<f32>(1.0));
+    let crossed = far > vec4<f32>(1.0);
+    return DpsmFour(
+        select(vec4<f32>(own.x), vec4<f32>(other), crossed) + u * inward * own.z,
+        own.y + v * inward * own.w,
+        crossed,
+    );
+}
+
+/// How far a tap's place is from the receiver's.
+///
+/// Domain: |offset| <= 1. Bound: 3 eps of the kernel's radius absolute.
+fn dpsm_filter_step(disk: DpsmDisk, offset: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(
+        disk.right.x * offset.x + disk.right.y * offset.y,
+        disk.right.y * offset.x - disk.right.x * offset.y,
+    );
+}
+
+/// What a tap that lies where a hemispherical light has no map reads: nearer than all.
+const DPSM_FILTER_UNMAPPED: f32 = -1.0;
+
+/// The layers of a receiver's own map and of the other one.
+///
+/// Domain: hemisphere 0 or 1. Exact.
+fn dpsm_filter_layers(light: DpsmLight, hemisphere: u32) -> vec2<u32> {
+    let other = DPSM_BACK - hemisphere;
+    return vec2<u32>(dpsm_light_layer(light, hemisphere), dpsm_light_layer(light, other));
+}
+
+/// The depths that four taps read.
+///
+/// layers: of dpsm_filter_layers; mapped: whether there is a map in each. Domain: coordinates in
+/// [-1, 2].
+fn dpsm_filter_read(
+    maps: texture_depth_2d_array,
+    point: sampler,
+    at: DpsmFour,
+    layers: vec2<u32>,
+    mapped: vec2<bool>,
+) -> vec4<f32> {
+    let layer = select(vec4<u32>(layers.x), vec4<u32>(layers.y), at.crossed);
+    let stored = vec4<f32>(
+        textureSampleLevel(maps, point, vec2<f32>(at.s.x, at.t.x), layer.x, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.y, at.t.y), layer.y, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.z, at.t.z), layer.z, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.w, at.t.w), layer.w, 0),
+    );
+    let known = select(vec4<bool>(mapped.x), vec4<bool>(mapped.y), at.crossed);
+    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, known);
+}
+
+/// Which of four taps are lit: no nearer than the receiver's plane.
+///
+/// offset: of the first in the unit disk; ring: its length; reach: the distances stored in the texels
+/// that they read, in the disk's units. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_lit(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    reach: vec4<f32>,
+) -> vec4<bool> {
+    let along = disk.lean.x * offset.x + disk.lean.y * offset.y;
+    let aside = disk.lean.y * offset.x - disk.lean.x * offset.y;
+    let facing = (disk.facing + disk.rest * ring) + vec4<f32>(along, aside, -along, -aside);
+    return reach * facing >= vec4<f32>(disk.height);
+}
+
+/// Which of four taps lie within the bias cone: so much nearer than the receiver that they shadow it
+/// though they lie beside its direction.
+///
+/// ring: their radius in the unit disk. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_within(disk: DpsmDisk, ring: f32, reach: vec4<f32>) -> vec4<bool> {
+    return reach * (1.0 + disk.steep * ring) < vec4<f32>(disk.distance);
+}
+
+/// The share of the light by the sum of what taps say: of those that say anything; 0 where none
+/// does.
+///
+/// sum: 1 for each lit tap, DPSM_FILTER_DARK for each in shadow. Domain: fewer than
+/// DPSM_FILTER_DARK taps. Bound: 2.5 eps relative.
+fn dpsm_filter_share(sum: vec4<f32>) -> f32 {
+    let all = dot(sum, vec4<f32>(1.0));
+    let dark = floor(all / DPSM_FILTER_DARK);
+    let lit = all - DPSM_FILTER_DARK * dark;
+    return lit / max(lit + dark, 1.0);
+}
+
+/// What four taps of a kernel say, to be summed.
+///
+/// offset, ring, stored: as for dpsm_filter_lit, stored depths. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_even(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> vec4<f32> {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    return select(says, vec4<f32>(1.0), lit);
+}
+
+/// The share of the light over a disk that is filled evenly.
+///
+/// rings: of four taps each, fewer than DPSM_FILTER_DARK taps in all. Domain: as for
+/// dpsm_filter_cone.
+fn dpsm_filter_sum(
+    maps: texture_depth_2d_array,
+    point: sampler,
+    disk: DpsmDisk,
+    light: DpsmLight,
+    rings: u32,
+) -> f32 {
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var sum = vec4<f32>();
+    var index = 0u;
+    while index < rings {
+        let ring = sqrt(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_filter_read(maps, point, four, layers, mapped);
+        sum += dpsm_filter_even(disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
+        index += 1u;
+    }
+    return dpsm_filter_share(sum);
+}
+
+/// The radius of a ring by the share of those farther in, and by its square.
+const DPSM_FILTER_DENSE: vec2<f32> = vec2<f32>(0.68, 0.32);
+
+/// The radius of a ring of taps that lie the denser the nearer they are to the middle: about the
+/// share of those farther in, to the power of 5/4.
+///
+/// Domain: shares in [0, 1]. Bound: 3 eps relative.
+fn dpsm_filter_dense(share: f32) -> f32 {
+    return share * (DPSM_FILTER_DENSE.x + DPSM_FILTER_DENSE.y * share);
+}
+
+/// What a kernel of fixed size has found so far.
+struct DpsmContact {
+    /// The sum of what its taps say.
+    sum: vec4<f32>,
+    /// The distance of the blocker that is farthest from the light, 0 before there is one.
+    farthest: f32,
+}
+
+/// What was found so far, and a ring more: nothing beyond what the farthest blocker asks for, so
+/// that the kernel narrows towards contact.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone, of a light under
+/// the kernel's own tangent.
+fn dpsm_filter_contact(
+    found: DpsmContact,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> DpsmContact {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let blocks = select(select(vec4<f32>(0.0), reach, dark), vec4<f32>(0.0), lit);
+    let blocked = max(max(blocks.x, blocks.y), max(blocks.z, blocks.w));
+    let farthest = max(found.farthest, blocked);
+    // ring <= distance / farthest - 1 + least
+    let counted = farthest * (1.0 + ring - disk.least) <= disk.distance;
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    let said = select(says, vec4<f32>(1.0), lit);
+    return DpsmContact(found.sum + select(vec4<f32>(0.0), said, counted), farthest);
+}
+
+/// The share of a spherical light that a receiver sees under the given tangent, by one loop over a
+/// cone of that size, the taps denser towards its middle: penumbrae are right where casters are
+/// halfway to the light and nearer to the receiver, and too narrow beyond.
+///
+/// point: a sampler that does not compare; p: light-space position; receiver: its dpsm_receiver;
+/// tangent: of the half-angle, at least half a texel's diagonal is taken; taps.count: rounded up to a
+/// whole number of fours, below DPSM_FILTER_DARK; taps.kind is not read; rotation: unit vector of the
+/// first tap, from dpsm_kernel_rotation or (1, 0). Domain: as for dpsm_filter_cone. A lit plane is
+/// never shadowed by itself.
 fn dpsm_filter_disk(
     maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
+    point: sampler,
+    p: vec3<f32>,
     receiver: DpsmReceiver,
-    kernel: DpsmKernel,
+    tangent: f32,
     light: DpsmLight,
     taps: DpsmTaps,
     rotation: vec2<f32>,
 ) -> f32 {
-    let reader = dpsm_filter_reader(receiver, light, taps);
-    var sum = 0.0;
-    var direction = rotation;
+    let at = dpsm_plane(p, receiver, DPSM_FILTER_SHIFT, light, taps.quantum, taps.tolerance);
+    let wide = min(max(tangent, DPSM_FILTER_SMALLEST * at.pitch), DPSM_FILTER_WIDEST);
+    let disk = dpsm_filter_cone(at, wide, wide, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var found = DpsmContact(vec4<f32>(), 0.0);
     var index = 0u;
-    while index < taps.count {
-        let offset = direction * dpsm_kernel_ring(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        sum += dpsm_filter_tap(maps, comparison, reader, tap, light);
-        direction = dpsm_kernel_turn(direction);
+    while index < rings {
+        let ring = dpsm_filter_dense(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_filter_read(maps, point, four, layers, mapped);
+        found = dpsm_filter_contact(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
         index += 1u;
     }
-    return sum / f32(taps.count);
+    return dpsm_filter_share(found.sum);
 }
 
-/// dpsm_filter_disk with the seam crossed by mirroring, r to 2 - r, for comparison.
+/// The mean over a kernel filled with Vogel's spiral, the seam crossed by mirroring, r to 2 - r, for
+/// comparison.
 ///
-/// Domain: as for dpsm_filter_disk.
+/// Domain: as for dpsm_kernel and dpsm_receiver.
 fn dpsm_filter_mirror(
     maps: texture_depth_2d_array,
     comparison: sampler_comparison,
@@ -621,11 +1044,10 @@ fn dpsm_filter_mirror(
     return sum / f32(taps.count);
 }
 
-/// Osman's own form: each tap moved in light space and projected again. The reference for
-/// dpsm_filter_disk.
+/// Osman's own form: each tap moved in light space and projected again. For comparison.
 ///
 /// p: light-space position, receiver: its dpsm_receiver; tangent as for dpsm_kernel.
-/// Domain: as for dpsm_filter_disk.
+/// Domain: as for dpsm_kernel and dpsm_receiver.
 fn dpsm_filter_reproject(
     maps: texture_depth_2d_array,
     comparison: sampler_comparison,

@@ -171,16 +171,36 @@ fn dpsm_kernel_turn(direction: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
 }
 
-/// A direction for the spiral's first tap that looks random from pixel to pixel: a unit vector,
-/// its angle even within 4%.
+/// Cosine and sine of the golden section of a right angle, between one ring of four taps and the
+/// next.
+const DPSM_KERNEL_QUARTER: vec2<f32> = vec2<f32>(0.5646348864175503, 0.8253408053890465);
+
+/// Taps in rings of four, a right angle apart: how many rings.
 ///
-/// Domain: any pixel. Bound: length 1 within 152 eps.
+/// Domain: count <= 2^31. Exact.
+fn dpsm_kernel_rings(count: u32) -> u32 {
+    return max((count + 3u) / 4u, 1u);
+}
+
+/// The direction of the first tap of the next ring: turned by the golden section of a right angle.
+///
+/// Domain: a unit vector. Bound: 2.5 eps absolute, each component; 4 eps each time in length and
+/// angle.
+fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
+    let c = DPSM_KERNEL_QUARTER.x;
+    let s = DPSM_KERNEL_QUARTER.y;
+    return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
+}
+
+/// A direction for a kernel's first tap that differs from pixel to pixel so that neighbours make
+/// up for each other: interleaved gradient noise (Jimenez 2014) in whole numbers. A unit vector.
+///
+/// pixel: place on the screen; by a light's coordinates the noise would show a moire. Domain: any
+/// pixel. Bound: length 1 within 152 eps.
 fn dpsm_kernel_rotation(pixel: vec2<u32>) -> vec2<f32> {
-    // an integer hash: odd factors, high bits folded onto low ones
-    var bits = (pixel.x * 0x9e3779b1u) ^ (pixel.y * 0x85ebca77u);
-    bits = (bits ^ (bits >> 15u)) * 0x2c1b3c6du;
-    bits = (bits ^ (bits >> 12u)) * 0x297a2d39u;
-    bits = bits ^ (bits >> 15u);
+    // shares of a turn in 2^-32: 0.06711056 x + 0.00583715 y, and 52.9829189 times it
+    let along = pixel.x * 288237660u + pixel.y * 25070368u;
+    let bits = along * 52u + (along >> 16u) * 64417u;
     let share = f32(bits >> 8u) * 0x1p-23 - 1.0;
     let start = vec2<f32>(1.0, DPSM_KERNEL_SIXTEENTH * share);
     var turned = start / length(start);

@@ -90,14 +90,6 @@ fn dpsm_flip(p: vec3<f32>, hemisphere: u32) -> vec3<f32> {
 /// in |p| can underflow.
 const DPSM_SMALLEST: f32 = 0x1p-51;
 
-/// Projects a light-space point to its own hemisphere's disk coordinates, r <= 1; the same bits
-/// for a point and its flip.
-///
-/// Domain: as for dpsm_project. Bound: 9.5 eps relative, results below 2^-103 counted as 2^-103.
-fn dpsm_project_own(p: vec3<f32>) -> vec2<f32> {
-    return p.xy / max(length(p) + abs(p.z), DPSM_SMALLEST);
-}
-
 /// The width of a texel of an N x N map (size = N) on the disk: 2 (1 + guard) / N.
 ///
 /// Domain: size >= 1, 0 <= guard <= 1. Bound: 3.5 eps relative.
@@ -105,48 +97,12 @@ fn dpsm_texel_width(size: f32, guard: f32) -> f32 {
     return 2.0 * (1.0 + guard) / size;
 }
 
-// dpsm::edge
-
-/// The largest component's magnitude.
+/// Disk coordinates to texture coordinates, 0.5 + 0.5 (u, -v) / (1 + guard): the stored disk
+/// r <= 1 + guard fills [0, 1], with texture coordinate y pointing down.
 ///
-/// Domain: any v without NaN. Exact.
-fn dpsm_edge_largest(v: vec3<f32>) -> f32 {
-    return max(max(abs(v.x), abs(v.y)), abs(v.z));
-}
-
-/// The unit vector along v; zero for vectors below 2^-100.
-///
-/// Domain: components up to 2^126. Bound: 11 eps absolute, each component.
-fn dpsm_edge_unit(v: vec3<f32>) -> vec3<f32> {
-    let largest = dpsm_edge_largest(v);
-    if largest < 0x1p-100 {
-        return vec3<f32>();
-    }
-    let scaled = v / largest;
-    return scaled / length(scaled);
-}
-
-/// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
-///
-/// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
-fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
-    return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
-}
-
-// dpsm::visibility
-
-/// Where a receiver looks, and what it compares.
-struct DpsmLookup {
-    /// Texture coordinates in the texture that holds the map.
-    coordinates: vec2<f32>,
-    /// The receiver's own depth, in [0, 1].
-    depth: f32,
-    /// Array layer.
-    layer: u32,
-    /// The receiver's hemisphere.
-    hemisphere: u32,
-    /// False where the light has no map for the receiver's hemisphere: always in shadow.
-    mapped: bool,
+/// Domain: r <= 2^63, 0 <= guard <= 1. Bound: 3 eps absolute for r <= 1 + guard.
+fn dpsm_disk_to_texture(uv: vec2<f32>, guard: f32) -> vec2<f32> {
+    return 0.5 + 0.5 * vec2<f32>(uv.x, -uv.y) / (1.0 + guard);
 }
 
 // dpsm::bias
@@ -160,10 +116,6 @@ struct DpsmReceiver {
     distance: f32,
 }
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 64 eps, 32 for each (docs/bias.md).
-const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
-
 /// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
 const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
 
@@ -173,128 +125,28 @@ const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
 /// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
 const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
-/// A square's half-diagonal over half its side, sqrt(2), rounded up.
-const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
+/// The square of the shortest normal that is one: 2^-120.
+const DPSM_BIAS_NORMAL: f32 = 0x1p-120;
 
-/// The receiver at a light-space point with a geometric normal of any length, of either side. It
-/// must be the triangle's own: an interpolated one is of another plane. A zero normal gives the
-/// plane that faces the light.
+/// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
+/// or one shorter than 2^-60, gives the plane that faces the light.
 ///
-/// Domain: largest |component| of p in [2^-51, 2^62] or p = 0, of the normal 0 or in
-/// [2^-100, 2^126]. Bound: normal 11 eps absolute, each component; height 14 eps |p| absolute;
-/// distance 6 eps relative.
+/// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
+/// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
+/// p = 0, normal no longer than 2^62. Bound: normal 11 eps absolute, each component; height
+/// 14 eps |p| absolute; distance 6 eps relative.
 fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
     let distance = length(p);
-    let given = dpsm_edge_unit(normal);
-    if dot(given, given) < 0.5 {
-        return DpsmReceiver(vec4<f32>(p / max(distance, DPSM_SMALLEST), distance), distance);
-    }
-    let height = dot(given, p);
-    return DpsmReceiver(vec4<f32>(select(given, -given, height < 0.0), abs(height)), distance);
-}
-
-/// The cosine of a receiver's incidence.
-///
-/// Domain: any receiver. Bound: 23 eps absolute.
-fn dpsm_receiver_cosine(receiver: DpsmReceiver) -> f32 {
-    return min(receiver.plane.w / max(receiver.distance, DPSM_SMALLEST), 1.0);
-}
-
-/// The distance of the receiver's plane in the direction of a hemisphere's disk point: the least
-/// that rounding of either plane allows. Where the direction does not meet the plane it is
-/// DPSM_SMALLEST, in front of all: a tap there never darkens.
-///
-/// Domain: r <= 2^62. Between 1 - 96 eps / cos and 1 times the plane's distance, cos that of the
-/// incidence there, and at most 2^17 times its height.
-fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32) -> f32 {
-    let d = dpsm_flip(dpsm_edge_terms(uv).xyz, hemisphere);
-    let whole = 1.0 + dot(uv, uv);
-    let facing = dot(receiver.plane.xyz, d);
-    if facing <= 0.0 {
-        return DPSM_SMALLEST;
-    }
-    let leaned = facing + DPSM_RECEIVER_ROUNDING * whole;
-    return max(receiver.plane.w * (whole / leaned), DPSM_SMALLEST);
-}
-
-/// What is left of the bias where the same direction is compared, in units of depth: the format's
-/// quantum, both depths' rounding, and the relative error of distances that the map's method is
-/// allowed.
-///
-/// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
-/// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
-fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
-    let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
-    return quantum + DPSM_BIAS_DEPTH + spread / (light.far - light.near);
-}
-
-/// The square of the chord on the unit sphere from a disk point to the farthest corner of the
-/// square window around it, at most 2: a window of more than 90 degrees counts as one.
-///
-/// texels: half the window's side, k + 1/2 for a kernel of k texels' radius on nearest texels.
-/// Domain: texels >= 0, r <= 2^30. Bound: (19 + 12 r) eps relative, rounded either way.
-fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
-    let side = texels * dpsm_texel_width(light.size, light.guard);
-    let r = length(uv);
-    let square = dot(uv, uv); // r * r may be rounded otherwise
-    let inner = max(r - side * DPSM_BIAS_DIAGONAL, 0.0);
-    // 4 d^2 / ((1 + r^2) (1 + r'^2)) for disk points d apart, here d^2 = 2 side^2
-    return min(8.0 * (side * side / ((1.0 + square) * (1.0 + inner * inner))), 2.0);
-}
-
-/// How much nearer than a receiver its plane may be within a chord of its direction, in units of
-/// depth, for the cosine of its incidence: l (1 - cos a / cos(a - psi)) / (far - near), and
-/// l (1 - cos a) where a <= psi.
-///
-/// chord_square: dpsm_bias_window. Domain: 0 <= cosine <= 1. Bound: 12 eps l / (far - near)
-/// absolute, beyond what the planes' rounding, which is allowed for, adds.
-fn dpsm_bias_plane(cosine: f32, distance: f32, chord_square: f32, light: DpsmLight) -> f32 {
-    let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
-    let fall = 0.5 * chord_square;
-    let turn = sqrt(chord_square * (1.0 - 0.25 * chord_square));
-    // cos(a - psi) - cos a; the plane's nearest point, at a = 0, if it is within the window
-    let steeper = max(sine * turn - cosine * fall, 0.0);
-    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + DPSM_RECEIVER_ROUNDING;
-    return distance * (drop / (cosine + drop)) / (light.far - light.near);
-}
-
-/// The footprint bias in units of depth: how much nearer than the receiver its plane may be at the
-/// texel centres within a square window around the disk point uv, whose half side is `texels`.
-///
-/// Domain and bound: as for dpsm_bias_window and dpsm_bias_plane.
-fn dpsm_bias_footprint(
-    receiver: DpsmReceiver,
-    uv: vec2<f32>,
-    texels: f32,
-    light: DpsmLight,
-) -> f32 {
-    let chord_square = dpsm_bias_window(uv, texels, light);
-    return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
+    let square = dot(normal, normal);
+    let known = square >= DPSM_BIAS_NORMAL;
+    let along = select(p, normal, known);
+    let size = select(max(distance, DPSM_SMALLEST), sqrt(square), known);
+    let unit = along * (1.0 / size);
+    let height = select(distance, dot(unit, p), known);
+    return DpsmReceiver(vec4<f32>(select(unit, -unit, height < 0.0), abs(height)), distance);
 }
 
 // dpsm::kernel
-
-/// Cosine and sine of the golden angle pi (3 - sqrt 5), between one tap of Vogel's spiral and the
-/// next.
-const DPSM_KERNEL_GOLDEN: vec2<f32> = vec2<f32>(-0.7373688780783197, 0.6754902942615238);
-
-/// A cone of directions as one hemisphere's disk coordinates show it.
-struct DpsmKernel {
-    /// The axis's disk coordinates, r <= 1.
-    axis: vec2<f32>,
-    /// The disk's radius when the axis is the pole: the tangent of half the half-angle.
-    reach: f32,
-    /// The hemisphere of the axis.
-    hemisphere: u32,
-}
-
-/// Where a tap reads.
-struct DpsmTap {
-    /// Disk coordinates in its own hemisphere, r <= 1.
-    uv: vec2<f32>,
-    /// The tap's hemisphere.
-    hemisphere: u32,
-}
 
 /// The tangent of the half-angle under which the light sees a disk of a world-space radius that
 /// faces it at p.
@@ -305,60 +157,160 @@ fn dpsm_kernel_tangent(p: vec3<f32>, radius: f32) -> f32 {
     return radius / max(length(p), DPSM_SMALLEST);
 }
 
-/// The cone around p's direction, in p's own hemisphere.
+/// Cosine and sine of the golden section of a right angle, between one ring of four taps and the
+/// next.
+const DPSM_KERNEL_QUARTER: vec2<f32> = vec2<f32>(0.5646348864175503, 0.8253408053890465);
+
+/// Taps in rings of four, a right angle apart: how many rings.
 ///
-/// p: light-space position; tangent: of the half-angle. Domain: largest |component| of p in
-/// [2^-51, 2^50] or p = 0, 0 <= tangent <= 2^10. Bound: 9.5 eps relative, both.
-fn dpsm_kernel(p: vec3<f32>, tangent: f32) -> DpsmKernel {
-    let reach = tangent / (1.0 + sqrt(1.0 + tangent * tangent));
-    return DpsmKernel(dpsm_project_own(p), reach, dpsm_hemisphere(p));
+/// Domain: count <= 2^31. Exact.
+fn dpsm_kernel_rings(count: u32) -> u32 {
+    return max((count + 3u) / 4u, 1u);
 }
 
-/// A tap of a kernel: the offset in the unit disk scaled to the pole's cone, turned to the axis,
-/// and continued in the other hemisphere where that lies beyond the rim. Turning is conformal, so
-/// the taps fill the cone's disk, and as evenly around the axis as the offsets do around 0.
-///
-/// With w = reach offset and complex numbers: (axis + w) / (1 - axis* w), or one over its
-/// conjugate, by one division. Domain: |offset| <= 1, kernel as dpsm_kernel gives it. Bound: 32 eps
-/// absolute for the kernel given.
-fn dpsm_kernel_tap(kernel: DpsmKernel, offset: vec2<f32>) -> DpsmTap {
-    let w = offset * kernel.reach;
-    let above = kernel.axis + w;
-    let real = 1.0 - dot(kernel.axis, w);
-    let imaginary = kernel.axis.x * w.y - kernel.axis.y * w.x;
-    let beyond = dot(above, above);
-    let within = real * real + imaginary * imaginary;
-    let product = vec2<f32>(
-        above.x * real - above.y * imaginary,
-        above.y * real + above.x * imaginary,
-    );
-    return DpsmTap(
-        product / max(beyond, within),
-        select(kernel.hemisphere, DPSM_BACK - kernel.hemisphere, beyond > within),
-    );
-}
-
-/// Radius in the unit disk of a tap of Vogel's spiral: sqrt((index + 1/2) / count).
-///
-/// Domain: index < count <= 2^24. Bound: 7.5 eps relative.
-fn dpsm_kernel_ring(index: u32, count: u32) -> f32 {
-    return sqrt((f32(index) + 0.5) / f32(count));
-}
-
-/// The direction of the spiral's next tap: turned by the golden angle.
+/// The direction of the first tap of the next ring: turned by the golden section of a right angle.
 ///
 /// Domain: a unit vector. Bound: 2.5 eps absolute, each component; 4 eps each time in length and
 /// angle.
-fn dpsm_kernel_turn(direction: vec2<f32>) -> vec2<f32> {
-    let c = DPSM_KERNEL_GOLDEN.x;
-    let s = DPSM_KERNEL_GOLDEN.y;
+fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
+    let c = DPSM_KERNEL_QUARTER.x;
+    let s = DPSM_KERNEL_QUARTER.y;
     return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
 }
 
-// dpsm::filter
+// dpsm::plane
 
-/// A tap of one texel, compared along the texel's centre.
-const DPSM_TAP_HARD: u32 = 0u;
+/// How far along its normal a receiver is moved for a single lookup: texels as they are wide there,
+/// times the sine of its incidence.
+const DPSM_PLANE_SHIFT: f32 = 0.35;
+
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 128 eps (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+
+/// A receiver in its map, moved along its normal.
+struct DpsmPlane {
+    /// Disk coordinates of the moved receiver, in the receiver's own hemisphere.
+    uv: vec2<f32>,
+    /// What n . d gains for each radian along u and v: the lean of the plane, as long as the sine of
+    /// the incidence.
+    lean: vec2<f32>,
+    /// n . d of the moved plane at uv, and all that it may be too small by.
+    facing: f32,
+    /// The cosine of the incidence.
+    cosine: f32,
+    /// The angle of a texel there.
+    pitch: f32,
+    /// The plane's height above the light, in units of far - near as all depths are; less for a
+    /// receiver beyond far.
+    height: f32,
+    /// The moved receiver's distance in the same units, at most far's.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in these units, with all that it may be too near
+    /// by.
+    near: f32,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+}
+
+/// The receiver moved towards the light along its normal by `shift` texels times the sine of its
+/// incidence.
+///
+/// p, receiver: a light-space point and its dpsm_receiver; quantum, tolerance: as for
+/// dpsm_bias_slack. Domain: largest |component| of p in [2^-51, 2^60] or p = 0, 0 <= shift <= 2,
+/// far <= 2^60. Bound: docs/plane.md.
+fn dpsm_plane(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    shift: f32,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> DpsmPlane {
+    let hemisphere = dpsm_hemisphere(p);
+    let n = dpsm_flip(receiver.plane.xyz, hemisphere);
+    let l = max(receiver.distance, DPSM_SMALLEST);
+    let sum = l + abs(p.z);
+    let inverse = 1.0 / (l * sum);
+    let uv = p.xy * (inverse * l);
+    let cosine = min(receiver.plane.w * (inverse * sum), 1.0);
+    let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+    let width = dpsm_texel_width(light.size, light.guard);
+    let pitch = width * (sum * (inverse * sum));
+    let lean = n.xy - uv * (n.z + cosine);
+    let moved = shift * sine;
+    let inside = min(light.far * (inverse * sum), 1.0);
+    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let range = 1.0 / (grown * (light.far - light.near));
+    return DpsmPlane(
+        uv - lean * (moved * width),
+        lean,
+        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine,
+        pitch,
+        receiver.plane.w * inside * range,
+        l * inside * range * (1.0 - moved * pitch * cosine),
+        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        hemisphere,
+    );
+}
+
+/// The share of the light at a receiver by the four texels around it, each weighted by its
+/// nearness: 1 lit, 0 in shadow, between them within a texel of a shadow's edge.
+///
+/// point: a sampler that does not compare; p: light-space position; receiver: its dpsm_receiver,
+/// whose normal may be interpolated; quantum, tolerance: as for dpsm_bias_slack. Domain: as for
+/// dpsm_plane, size at least 2. A lit plane is never shadowed by itself. An occluder less than a
+/// texel nearer to the light than plane and receiver is not seen.
+fn dpsm_visibility_plane(
+    maps: texture_depth_2d_array,
+    point: sampler,
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> f32 {
+    let at = dpsm_plane(p, receiver, DPSM_PLANE_SHIFT, light, quantum, tolerance);
+    let four = dpsm_plane_four(at, light);
+    let st = dpsm_light_coordinates(light, at.hemisphere, (four.xy + 1.0) / light.size);
+    let stored = textureGather(maps, point, st, dpsm_light_layer(light, at.hemisphere));
+    return select(0.0, dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres);
+}
+
+/// The four texels around a receiver: the place of the first, which has the least coordinates,
+/// counted from the map's top left, and how far the receiver is from its centre towards the others'.
+///
+/// Domain: as for dpsm_plane, size at least 2. Bound: docs/plane.md.
+fn dpsm_plane_four(at: DpsmPlane, light: DpsmLight) -> vec4<f32> {
+    let place = dpsm_disk_to_texture(at.uv, light.guard) * light.size - 0.5;
+    let first = clamp(floor(place), vec2<f32>(0.0), vec2<f32>(light.size - 2.0));
+    return vec4<f32>(first, place - first);
+}
+
+/// The share of the light by the four depths that a gather at the corner of four texels gives:
+/// lower left, lower right, upper right, upper left.
+///
+/// four: dpsm_plane_four. Domain: as for dpsm_plane, depths in [0, 1].
+fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
+    let step = at.pitch * at.lean;
+    let left = at.facing - step.x * four.z;
+    let right = left + step.x;
+    let up = step.y * four.w;
+    let down = up - step.y;
+    let facing = vec4<f32>(left + down, right + down, right + up, left + up);
+    let reach = stored + at.near;
+    let lit = reach * facing >= vec4<f32>(at.height);
+    let texel = at.pitch * at.cosine;
+    let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
+    let near = 1.0 - four.zw;
+    let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);
+    let bright = dot(select(vec4<f32>(0.0), weight, lit), vec4<f32>(1.0));
+    let both = bright + dot(select(vec4<f32>(0.0), weight, dark), vec4<f32>(1.0));
+    return select(1.0, bright / both, both > 0.0);
+}
+
+// dpsm::filter
 
 /// A filter's taps, and what the maps' depths may rightly be off by.
 struct DpsmTaps {
@@ -372,146 +324,310 @@ struct DpsmTaps {
     tolerance: f32,
 }
 
-/// A filter's taps with what all of them share: no tap divides by it again.
-struct DpsmReader {
-    receiver: DpsmReceiver,
-    /// DPSM_TAP_HARD or DPSM_TAP_LINEAR.
-    kind: u32,
-    /// Texels per unit of the disk, u right and v down.
-    scale: vec2<f32>,
-    /// Units of the disk per texel.
-    unscale: vec2<f32>,
-    /// The map's middle in texels.
-    middle: f32,
-    /// Texture coordinates per texel of the map.
-    texel: f32,
-    /// Depth of a distance: l times x minus y, in [0, 1], less l times z plus w of slack.
-    depth: vec4<f32>,
+/// How far along its normal a receiver is moved for a kernel, in texels times the sine of its
+/// incidence.
+const DPSM_FILTER_SHIFT: f32 = 0.45;
+
+/// How much nearer than the plane, in texels, is still lit.
+const DPSM_FILTER_OWN: f32 = 0.5;
+
+/// What a receiver at grazing incidence is to be moved by in addition: what half a texel's diagonal
+/// is more than the shift, rounded up.
+const DPSM_FILTER_GRAZING: f32 = 0.258;
+
+/// The smallest kernel's half-angle in texels: half a texel's diagonal.
+const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+
+/// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
+/// lie within it.
+const DPSM_FILTER_CONE: f32 = 0.1;
+
+/// The bias cone's half-angle in those of the light, where that is more.
+const DPSM_FILTER_WIDER: f32 = 1.3333334;
+
+/// Largest tangent of a kernel, 45 degrees: wider ones would need more taps than any have.
+const DPSM_FILTER_WIDEST: f32 = 1.0;
+
+/// What one tap in shadow adds to a sum in which a lit one adds 1: more than there are taps.
+const DPSM_FILTER_DARK: f32 = 1024.0;
+
+/// What all taps of a kernel share: where they read, and what they compare.
+///
+/// Taps come in rings of four: at an offset (x, y) in the unit disk, and at the same turned by one,
+/// two and three right angles. Places are disk coordinates with v pointing down, as texture
+/// coordinates do.
+struct DpsmDisk {
+    /// The receiver's place.
+    place: vec2<f32>,
+    /// What the place gains by x; by y it gains (y, -x) of that.
+    right: vec2<f32>,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+    /// n . d of the receiver's plane at the receiver, with all that it may be too small by.
+    facing: f32,
+    /// What that gains by x and y.
+    lean: vec2<f32>,
+    /// What it may gain by x^2 + y^2.
+    rest: f32,
+    /// The plane's height, as dpsm_plane gives it.
+    height: f32,
+    /// The receiver's distance, as dpsm_plane gives it.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in their units.
+    near: f32,
+    /// How much nearer than the receiver a blocker must be for each unit of the tap's radius.
+    steep: f32,
+    /// How far from the receiver's direction any blocker counts, in the kernel's radii.
+    least: f32,
 }
 
-/// What dividing by a reciprocal adds to a depth's rounding, 4 eps of each of its terms.
-const DPSM_FILTER_ROUNDING: f32 = 0x1p-21;
-
-/// The reader of a receiver's taps.
+/// The disk of a kernel around a receiver.
 ///
-/// Domain: as for dpsm_receiver and dpsm_bias_slack. Bound: 4.5 eps relative, slack 12.
-fn dpsm_filter_reader(receiver: DpsmReceiver, light: DpsmLight, taps: DpsmTaps) -> DpsmReader {
-    let width = dpsm_texel_width(light.size, light.guard);
-    let range = light.far - light.near;
-    // dpsm_bias_slack is linear in the distance
-    let none = dpsm_bias_slack(0.0, light, taps.quantum, taps.tolerance);
-    let slope = (taps.tolerance + (DPSM_BIAS_DISTANCE + DPSM_FILTER_ROUNDING)) / range;
-    return DpsmReader(
-        receiver,
-        taps.kind,
-        vec2<f32>(1.0, -1.0) / width,
-        vec2<f32>(1.0, -1.0) * width,
-        0.5 * light.size,
-        1.0 / light.size,
-        vec4<f32>(
-            1.0 / range,
-            light.near / range,
-            slope,
-            none + DPSM_FILTER_ROUNDING * (light.near / range),
-        ),
+/// at: dpsm_plane of DPSM_FILTER_SHIFT; tangent: of the kernel's half-angle; light_tangent: of the
+/// light's, as the receiver sees it; rotation: a unit vector, of the first tap. Domain: as for
+/// dpsm_plane, 2^-24 <= tangent <= 1, 0 <= light_tangent <= 2^24. Bound: docs/filter.md.
+fn dpsm_filter_cone(
+    at: DpsmPlane,
+    tangent: f32,
+    light_tangent: f32,
+    rotation: vec2<f32>,
+) -> DpsmDisk {
+    let square = dot(at.uv, at.uv);
+    let r = sqrt(square);
+    let radius = tangent * (0.5 + 0.5 * square);
+    let across = rotation * radius;
+    let aside = vec2<f32>(-rotation.y, rotation.x);
+    let sine = length(at.lean);
+    // the nearest texel's centre lies up to half a diagonal away
+    let texel = DPSM_FILTER_SMALLEST * at.pitch;
+    let rise = max(DPSM_FILTER_OWN * at.cosine, DPSM_FILTER_GRAZING * sine) + texel * sine;
+    // the lean is to first order in the disk; this bounds the rest (docs/filter.md)
+    let reach = tangent + texel;
+    let within = 1.0 / (1.0 - 0.5 * min(r * reach, 1.0));
+    let curved = reach * reach * (0.5 * r + 0.25 * reach) * (within * within * within);
+    return DpsmDisk(
+        vec2<f32>(at.uv.x, -at.uv.y),
+        vec2<f32>(across.x, -across.y),
+        at.hemisphere,
+        at.facing + rise * at.pitch,
+        vec2<f32>(dot(at.lean, rotation), dot(at.lean, aside)) * tangent,
+        sine * curved,
+        at.height,
+        at.distance,
+        at.near,
+        tangent / max(DPSM_FILTER_CONE, DPSM_FILTER_WIDER * light_tangent),
+        texel / tangent,
     );
 }
 
-/// Where a tap reads, and the depth that it compares: that of the receiver's plane in the
-/// direction of the texel's centre (hard taps), or in the tap's own, less what the plane may fall
-/// within a texel around it (linear ones); the receiver's own where the plane is not met.
+/// A map in its texture: the coordinates of its middle, and what one unit of the disk is there.
 ///
-/// Domain: as for dpsm_receiver_distance; tap.uv with r <= 1. A lit plane is never shadowed by
-/// itself.
-fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> DpsmLookup {
-    var place = tap.uv * reader.scale + reader.middle;
-    var uv = tap.uv;
-    if reader.kind == DPSM_TAP_HARD {
-        place = clamp(floor(place), vec2<f32>(), vec2<f32>(light.size - 1.0)) + 0.5;
-        uv = (place - reader.middle) * reader.unscale;
-    }
-    let met = dpsm_receiver_distance(reader.receiver, uv, tap.hemisphere);
-    // beyond the plane's horizon what is nearer than the receiver shadows it
-    let is_met = met > DPSM_SMALLEST;
-    let l = min(select(reader.receiver.distance, met, is_met), light.far);
-    var depth = l * reader.depth.x - reader.depth.y;
-    if reader.kind != DPSM_TAP_HARD {
-        if is_met {
-            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l), uv, 1.0, light);
-        } else {
-            // within the window the plane is no nearer than its height over the chord
-            let chord = sqrt(dpsm_bias_window(uv, 1.0, light));
-            let plane = reader.receiver.plane.w / max(chord, DPSM_SMALLEST);
-            depth = min(depth, plane * reader.depth.x - reader.depth.y);
-        }
-    }
-    return DpsmLookup(
-        dpsm_light_coordinates(light, tap.hemisphere, place * reader.texel),
-        clamp(depth, 0.0, 1.0) - (l * reader.depth.z + reader.depth.w),
-        dpsm_light_layer(light, tap.hemisphere),
-        tap.hemisphere,
-        tap.hemisphere < light.hemispheres,
+/// Domain: hemisphere 0 or 1. Bound: middle as for dpsm_light_coordinates, unit 4.5 eps relative.
+fn dpsm_filter_map(light: DpsmLight, hemisphere: u32) -> vec4<f32> {
+    let middle = dpsm_light_coordinates(light, hemisphere, vec2<f32>(0.5));
+    let extent = select(vec2<f32>(1.0), light.rectangle.zw, light.placement == DPSM_ATLAS);
+    return vec4<f32>(middle, extent * (0.5 / (1.0 + light.guard)));
+}
+
+/// Where four taps of a disk read: texture coordinates, and in which map.
+struct DpsmFour {
+    s: vec4<f32>,
+    t: vec4<f32>,
+    /// Which lie beyond the rim, and read the other hemisphere's map.
+    crossed: vec4<bool>,
+}
+
+/// Where four taps read: those beyond the rim continue in the other map, at the inverse of their
+/// radius.
+///
+/// offset: of the first in the unit disk; own: the receiver's map; other: the middle of the other one
+/// along x. Domain: as for dpsm_filter_cone. Bound: docs/filter.md.
+fn dpsm_filter_places(
+    disk: DpsmDisk,
+    own: vec4<f32>,
+    other: f32,
+    offset: vec2<f32>,
+) -> DpsmFour {
+    let step = dpsm_filter_step(disk, offset);
+    let u = disk.place.x + vec4<f32>(step.x, step.y, -step.x, -step.y);
+    let v = disk.place.y + vec4<f32>(step.y, -step.x, -step.y, step.x);
+    let far = u * u + v * v;
+    let inward = 1.0 / max(far, vec4<f32>(1.0));
+    let crossed = far > vec4<f32>(1.0);
+    return DpsmFour(
+        select(vec4<f32>(own.x), vec4<f32>(other), crossed) + u * inward * own.z,
+        own.y + v * inward * own.w,
+        crossed,
     );
 }
 
-/// One tap: 1 lit, 0 in shadow, between them for a linear one. For taps of the caller's own:
-/// one dpsm_filter_reader, dpsm_kernel_tap of the kernel and each offset, and the mean.
+/// How far a tap's place is from the receiver's.
 ///
-/// Domain: as for dpsm_filter_lookup.
-fn dpsm_filter_tap(
-    maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
-    reader: DpsmReader,
-    tap: DpsmTap,
-    light: DpsmLight,
-) -> f32 {
-    let at = dpsm_filter_lookup(reader, tap, light);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
-    return select(0.0, lit, at.mapped);
+/// Domain: |offset| <= 1. Bound: 3 eps of the kernel's radius absolute.
+fn dpsm_filter_step(disk: DpsmDisk, offset: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(
+        disk.right.x * offset.x + disk.right.y * offset.y,
+        disk.right.y * offset.x - disk.right.x * offset.y,
+    );
 }
 
-/// One tap at the receiver itself: the hardware's 2 x 2 comparison where the taps are linear, else
-/// the test along the texel's centre.
+/// What a tap that lies where a hemispherical light has no map reads: nearer than all.
+const DPSM_FILTER_UNMAPPED: f32 = -1.0;
+
+/// The layers of a receiver's own map and of the other one.
 ///
-/// p: light-space position, receiver: its dpsm_receiver. Domain: as for dpsm_receiver.
-fn dpsm_filter_hardware(
-    maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    taps: DpsmTaps,
-) -> f32 {
-    let own = DpsmTap(dpsm_project_own(p), dpsm_hemisphere(p));
-    return dpsm_filter_tap(maps, comparison, dpsm_filter_reader(receiver, light, taps), own, light);
+/// Domain: hemisphere 0 or 1. Exact.
+fn dpsm_filter_layers(light: DpsmLight, hemisphere: u32) -> vec2<u32> {
+    let other = DPSM_BACK - hemisphere;
+    return vec2<u32>(dpsm_light_layer(light, hemisphere), dpsm_light_layer(light, other));
 }
 
-/// The disk that stands for a cone, filled with Vogel's spiral: dpsm_kernel's taps, even around the
-/// receiver's direction.
+/// The depths that four taps read.
 ///
-/// rotation: unit vector of the first tap, from dpsm_kernel_rotation or (1, 0).
-/// Domain: as for dpsm_kernel and dpsm_receiver.
+/// layers: of dpsm_filter_layers; mapped: whether there is a map in each. Domain: coordinates in
+/// [-1, 2].
+fn dpsm_filter_read(
+    maps: texture_depth_2d_array,
+    point: sampler,
+    at: DpsmFour,
+    layers: vec2<u32>,
+    mapped: vec2<bool>,
+) -> vec4<f32> {
+    let layer = select(vec4<u32>(layers.x), vec4<u32>(layers.y), at.crossed);
+    let stored = vec4<f32>(
+        textureSampleLevel(maps, point, vec2<f32>(at.s.x, at.t.x), layer.x, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.y, at.t.y), layer.y, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.z, at.t.z), layer.z, 0),
+        textureSampleLevel(maps, point, vec2<f32>(at.s.w, at.t.w), layer.w, 0),
+    );
+    let known = select(vec4<bool>(mapped.x), vec4<bool>(mapped.y), at.crossed);
+    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, known);
+}
+
+/// Which of four taps are lit: no nearer than the receiver's plane.
+///
+/// offset: of the first in the unit disk; ring: its length; reach: the distances stored in the texels
+/// that they read, in the disk's units. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_lit(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    reach: vec4<f32>,
+) -> vec4<bool> {
+    let along = disk.lean.x * offset.x + disk.lean.y * offset.y;
+    let aside = disk.lean.y * offset.x - disk.lean.x * offset.y;
+    let facing = (disk.facing + disk.rest * ring) + vec4<f32>(along, aside, -along, -aside);
+    return reach * facing >= vec4<f32>(disk.height);
+}
+
+/// Which of four taps lie within the bias cone: so much nearer than the receiver that they shadow it
+/// though they lie beside its direction.
+///
+/// ring: their radius in the unit disk. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_within(disk: DpsmDisk, ring: f32, reach: vec4<f32>) -> vec4<bool> {
+    return reach * (1.0 + disk.steep * ring) < vec4<f32>(disk.distance);
+}
+
+/// The share of the light by the sum of what taps say: of those that say anything; 0 where none
+/// does.
+///
+/// sum: 1 for each lit tap, DPSM_FILTER_DARK for each in shadow. Domain: fewer than
+/// DPSM_FILTER_DARK taps. Bound: 2.5 eps relative.
+fn dpsm_filter_share(sum: vec4<f32>) -> f32 {
+    let all = dot(sum, vec4<f32>(1.0));
+    let dark = floor(all / DPSM_FILTER_DARK);
+    let lit = all - DPSM_FILTER_DARK * dark;
+    return lit / max(lit + dark, 1.0);
+}
+
+/// The radius of a ring by the share of those farther in, and by its square.
+const DPSM_FILTER_DENSE: vec2<f32> = vec2<f32>(0.68, 0.32);
+
+/// The radius of a ring of taps that lie the denser the nearer they are to the middle: about the
+/// share of those farther in, to the power of 5/4.
+///
+/// Domain: shares in [0, 1]. Bound: 3 eps relative.
+fn dpsm_filter_dense(share: f32) -> f32 {
+    return share * (DPSM_FILTER_DENSE.x + DPSM_FILTER_DENSE.y * share);
+}
+
+/// What a kernel of fixed size has found so far.
+struct DpsmContact {
+    /// The sum of what its taps say.
+    sum: vec4<f32>,
+    /// The distance of the blocker that is farthest from the light, 0 before there is one.
+    farthest: f32,
+}
+
+/// What was found so far, and a ring more: nothing beyond what the farthest blocker asks for, so
+/// that the kernel narrows towards contact.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone, of a light under
+/// the kernel's own tangent.
+fn dpsm_filter_contact(
+    found: DpsmContact,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> DpsmContact {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let blocks = select(select(vec4<f32>(0.0), reach, dark), vec4<f32>(0.0), lit);
+    let blocked = max(max(blocks.x, blocks.y), max(blocks.z, blocks.w));
+    let farthest = max(found.farthest, blocked);
+    // ring <= distance / farthest - 1 + least
+    let counted = farthest * (1.0 + ring - disk.least) <= disk.distance;
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    let said = select(says, vec4<f32>(1.0), lit);
+    return DpsmContact(found.sum + select(vec4<f32>(0.0), said, counted), farthest);
+}
+
+/// The share of a spherical light that a receiver sees under the given tangent, by one loop over a
+/// cone of that size, the taps denser towards its middle: penumbrae are right where casters are
+/// halfway to the light and nearer to the receiver, and too narrow beyond.
+///
+/// point: a sampler that does not compare; p: light-space position; receiver: its dpsm_receiver;
+/// tangent: of the half-angle, at least half a texel's diagonal is taken; taps.count: rounded up to a
+/// whole number of fours, below DPSM_FILTER_DARK; taps.kind is not read; rotation: unit vector of the
+/// first tap, from dpsm_kernel_rotation or (1, 0). Domain: as for dpsm_filter_cone. A lit plane is
+/// never shadowed by itself.
 fn dpsm_filter_disk(
     maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
+    point: sampler,
+    p: vec3<f32>,
     receiver: DpsmReceiver,
-    kernel: DpsmKernel,
+    tangent: f32,
     light: DpsmLight,
     taps: DpsmTaps,
     rotation: vec2<f32>,
 ) -> f32 {
-    let reader = dpsm_filter_reader(receiver, light, taps);
-    var sum = 0.0;
-    var direction = rotation;
+    let at = dpsm_plane(p, receiver, DPSM_FILTER_SHIFT, light, taps.quantum, taps.tolerance);
+    let wide = min(max(tangent, DPSM_FILTER_SMALLEST * at.pitch), DPSM_FILTER_WIDEST);
+    let disk = dpsm_filter_cone(at, wide, wide, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var found = DpsmContact(vec4<f32>(), 0.0);
     var index = 0u;
-    while index < taps.count {
-        let offset = direction * dpsm_kernel_ring(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        sum += dpsm_filter_tap(maps, comparison, reader, tap, light);
-        direction = dpsm_kernel_turn(direction);
+    while index < rings {
+        let ring = dpsm_filter_dense(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_filter_read(maps, point, four, layers, mapped);
+        found = dpsm_filter_contact(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
         index += 1u;
     }
-    return sum / f32(taps.count);
+    return dpsm_filter_share(found.sum);
 }
 
 // dpsm::lights
@@ -533,13 +649,15 @@ fn dpsm_lights_turn(direction: vec3<f32>, light: DpsmLight) -> vec3<f32> {
     );
 }
 
-/// The share of one light that a surface point gets, by dpsm_filter_disk of a world-space radius.
+/// The share of one light that a surface point gets, by dpsm_filter_disk of a world-space radius, or
+/// by dpsm_visibility_plane.
 ///
-/// world, normal: the point and its geometric normal, of any length, in world space; radius: of
-/// the kernel at the point, 0 for a single tap. Domain: as for dpsm_to_light and dpsm_filter_disk.
+/// point: a sampler that does not compare; world, normal: the point and its normal, of any length,
+/// in world space; radius: of the kernel at the point, 0 for a single lookup. Domain: as for
+/// dpsm_to_light and dpsm_filter_disk.
 fn dpsm_lights_visibility(
     maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
+    point: sampler,
     world: vec3<f32>,
     normal: vec3<f32>,
     light: DpsmLight,
@@ -550,10 +668,12 @@ fn dpsm_lights_visibility(
     let p = dpsm_to_light(world, light);
     let receiver = dpsm_receiver(p, dpsm_lights_turn(normal, light));
     if radius <= 0.0 {
-        return dpsm_filter_hardware(maps, comparison, p, receiver, light, taps);
+        return dpsm_visibility_plane(
+            maps, point, p, receiver, light, taps.quantum, taps.tolerance,
+        );
     }
-    let kernel = dpsm_kernel(p, dpsm_kernel_tangent(p, radius));
-    return dpsm_filter_disk(maps, comparison, receiver, kernel, light, taps, rotation);
+    let tangent = dpsm_kernel_tangent(p, radius);
+    return dpsm_filter_disk(maps, point, p, receiver, tangent, light, taps, rotation);
 }
 
 /// The shares of up to four lights; 0 for those from count on.
@@ -561,7 +681,7 @@ fn dpsm_lights_visibility(
 /// Domain: as for dpsm_lights_visibility.
 fn dpsm_lights_four(
     maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
+    point: sampler,
     world: vec3<f32>,
     normal: vec3<f32>,
     lights: array<DpsmLight, 4>,
@@ -575,7 +695,7 @@ fn dpsm_lights_four(
     var index = 0u;
     while index < min(count, 4u) {
         shares[index] = dpsm_lights_visibility(
-            maps, comparison, world, normal, all[index], taps, radius, rotation,
+            maps, point, world, normal, all[index], taps, radius, rotation,
         );
         index += 1u;
     }

@@ -147,16 +147,6 @@ fn dpsm_project_own(p: vec3<f32>) -> vec2<f32> {
     return p.xy / max(length(p) + abs(p.z), DPSM_SMALLEST);
 }
 
-/// The angle in radians that a texel of an N x N map (size = N) spans at disk coordinates uv:
-/// 4 (1 + guard) / (N (1 + r^2)), the same in every direction.
-///
-/// Domain: size (1 + r^2) <= 2^126, size >= 1, 0 <= guard <= 1. Bound: 8.5 eps relative; the
-/// formula itself is the pitch to first order, within pitch^2 / 3 of itself of the exact angle for
-/// r <= 2.
-fn dpsm_texel_pitch(uv: vec2<f32>, size: f32, guard: f32) -> f32 {
-    return 4.0 * (1.0 + guard) / (size + size * dot(uv, uv));
-}
-
 /// The width of a texel of an N x N map (size = N) on the disk: 2 (1 + guard) / N.
 ///
 /// Domain: size >= 1, 0 <= guard <= 1. Bound: 3.5 eps relative.
@@ -344,15 +334,6 @@ struct DpsmTap {
     hemisphere: u32,
 }
 
-/// The cone around p's direction, in p's own hemisphere.
-///
-/// p: light-space position; tangent: of the half-angle. Domain: largest |component| of p in
-/// [2^-51, 2^50] or p = 0, 0 <= tangent <= 2^10. Bound: 9.5 eps relative, both.
-fn dpsm_kernel(p: vec3<f32>, tangent: f32) -> DpsmKernel {
-    let reach = tangent / (1.0 + sqrt(1.0 + tangent * tangent));
-    return DpsmKernel(dpsm_project_own(p), reach, dpsm_hemisphere(p));
-}
-
 /// A tap of a kernel: the offset in the unit disk scaled to the pole's cone, turned to the axis,
 /// and continued in the other hemisphere where that lies beyond the rim. Turning is conformal, so
 /// the taps fill the cone's disk, and as evenly around the axis as the offsets do around 0.
@@ -419,6 +400,136 @@ fn dpsm_kernel_turn(direction: vec2<f32>) -> vec2<f32> {
     let c = DPSM_KERNEL_GOLDEN.x;
     let s = DPSM_KERNEL_GOLDEN.y;
     return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
+}
+
+/// Cosine and sine of the golden section of a right angle, between one ring of four taps and the
+/// next.
+const DPSM_KERNEL_QUARTER: vec2<f32> = vec2<f32>(0.5646348864175503, 0.8253408053890465);
+
+/// Taps in rings of four, a right angle apart: how many rings.
+///
+/// Domain: count <= 2^31. Exact.
+fn dpsm_kernel_rings(count: u32) -> u32 {
+    return max((count + 3u) / 4u, 1u);
+}
+
+/// The direction of the first tap of the next ring: turned by the golden section of a right angle.
+///
+/// Domain: a unit vector. Bound: 2.5 eps absolute, each component; 4 eps each time in length and
+/// angle.
+fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
+    let c = DPSM_KERNEL_QUARTER.x;
+    let s = DPSM_KERNEL_QUARTER.y;
+    return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
+}
+
+// dpsm::plane
+
+/// How far along its normal a receiver is moved for a single lookup: texels as they are wide there,
+/// times the sine of its incidence.
+const DPSM_PLANE_SHIFT: f32 = 0.35;
+
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 128 eps (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+
+/// A receiver in its map, moved along its normal.
+struct DpsmPlane {
+    /// Disk coordinates of the moved receiver, in the receiver's own hemisphere.
+    uv: vec2<f32>,
+    /// What n . d gains for each radian along u and v: the lean of the plane, as long as the sine of
+    /// the incidence.
+    lean: vec2<f32>,
+    /// n . d of the moved plane at uv, and all that it may be too small by.
+    facing: f32,
+    /// The cosine of the incidence.
+    cosine: f32,
+    /// The angle of a texel there.
+    pitch: f32,
+    /// The plane's height above the light, in units of far - near as all depths are; less for a
+    /// receiver beyond far.
+    height: f32,
+    /// The moved receiver's distance in the same units, at most far's.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in these units, with all that it may be too near
+    /// by.
+    near: f32,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+}
+
+/// The receiver moved towards the light along its normal by `shift` texels times the sine of its
+/// incidence.
+///
+/// p, receiver: a light-space point and its dpsm_receiver; quantum, tolerance: as for
+/// dpsm_bias_slack. Domain: largest |component| of p in [2^-51, 2^60] or p = 0, 0 <= shift <= 2,
+/// far <= 2^60. Bound: docs/plane.md.
+fn dpsm_plane(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    shift: f32,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> DpsmPlane {
+    let hemisphere = dpsm_hemisphere(p);
+    let n = dpsm_flip(receiver.plane.xyz, hemisphere);
+    let l = max(receiver.distance, DPSM_SMALLEST);
+    let sum = l + abs(p.z);
+    let inverse = 1.0 / (l * sum);
+    let uv = p.xy * (inverse * l);
+    let cosine = min(receiver.plane.w * (inverse * sum), 1.0);
+    let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+    let width = dpsm_texel_width(light.size, light.guard);
+    let pitch = width * (sum * (inverse * sum));
+    let lean = n.xy - uv * (n.z + cosine);
+    let moved = shift * sine;
+    let inside = min(light.far * (inverse * sum), 1.0);
+    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let range = 1.0 / (grown * (light.far - light.near));
+    return DpsmPlane(
+        uv - lean * (moved * width),
+        lean,
+        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine,
+        pitch,
+        receiver.plane.w * inside * range,
+        l * inside * range * (1.0 - moved * pitch * cosine),
+        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        hemisphere,
+    );
+}
+
+/// The four texels around a receiver: the place of the first, which has the least coordinates,
+/// counted from the map's top left, and how far the receiver is from its centre towards the others'.
+///
+/// Domain: as for dpsm_plane, size at least 2. Bound: docs/plane.md.
+fn dpsm_plane_four(at: DpsmPlane, light: DpsmLight) -> vec4<f32> {
+    let place = dpsm_disk_to_texture(at.uv, light.guard) * light.size - 0.5;
+    let first = clamp(floor(place), vec2<f32>(0.0), vec2<f32>(light.size - 2.0));
+    return vec4<f32>(first, place - first);
+}
+
+/// The share of the light by the four depths that a gather at the corner of four texels gives:
+/// lower left, lower right, upper right, upper left.
+///
+/// four: dpsm_plane_four. Domain: as for dpsm_plane, depths in [0, 1].
+fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
+    let step = at.pitch * at.lean;
+    let left = at.facing - step.x * four.z;
+    let right = left + step.x;
+    let up = step.y * four.w;
+    let down = up - step.y;
+    let facing = vec4<f32>(left + down, right + down, right + up, left + up);
+    let reach = stored + at.near;
+    let lit = reach * facing >= vec4<f32>(at.height);
+    let texel = at.pitch * at.cosine;
+    let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
+    let near = 1.0 - four.zw;
+    let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);
+    let bright = dot(select(vec4<f32>(0.0), weight, lit), vec4<f32>(1.0));
+    let both = bright + dot(select(vec4<f32>(0.0), weight, dark), vec4<f32>(1.0));
+    return select(1.0, bright / both, both > 0.0);
 }
 
 // dpsm::filter
@@ -520,19 +631,269 @@ fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> Dps
     );
 }
 
-// dpsm::pcss
+/// How far along its normal a receiver is moved for a kernel, in texels times the sine of its
+/// incidence.
+const DPSM_FILTER_SHIFT: f32 = 0.45;
+
+/// How much nearer than the plane, in texels, is still lit.
+const DPSM_FILTER_OWN: f32 = 0.5;
+
+/// What a receiver at grazing incidence is to be moved by in addition: what half a texel's diagonal
+/// is more than the shift, rounded up.
+const DPSM_FILTER_GRAZING: f32 = 0.258;
+
+/// The smallest kernel's half-angle in texels: half a texel's diagonal.
+const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+
+/// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
+/// lie within it.
+const DPSM_FILTER_CONE: f32 = 0.1;
+
+/// The bias cone's half-angle in those of the light, where that is more.
+const DPSM_FILTER_WIDER: f32 = 1.3333334;
 
 /// Largest tangent of a kernel, 45 degrees: wider ones would need more taps than any have.
-const DPSM_PCSS_WIDEST: f32 = 1.0;
+const DPSM_FILTER_WIDEST: f32 = 1.0;
+
+/// What one tap in shadow adds to a sum in which a lit one adds 1: more than there are taps.
+const DPSM_FILTER_DARK: f32 = 1024.0;
+
+/// What all taps of a kernel share: where they read, and what they compare.
+///
+/// Taps come in rings of four: at an offset (x, y) in the unit disk, and at the same turned by one,
+/// two and three right angles. Places are disk coordinates with v pointing down, as texture
+/// coordinates do.
+struct DpsmDisk {
+    /// The receiver's place.
+    place: vec2<f32>,
+    /// What the place gains by x; by y it gains (y, -x) of that.
+    right: vec2<f32>,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+    /// n . d of the receiver's plane at the receiver, with all that it may be too small by.
+    facing: f32,
+    /// What that gains by x and y.
+    lean: vec2<f32>,
+    /// What it may gain by x^2 + y^2.
+    rest: f32,
+    /// The plane's height, as dpsm_plane gives it.
+    height: f32,
+    /// The receiver's distance, as dpsm_plane gives it.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in their units.
+    near: f32,
+    /// How much nearer than the receiver a blocker must be for each unit of the tap's radius.
+    steep: f32,
+    /// How far from the receiver's direction any blocker counts, in the kernel's radii.
+    least: f32,
+}
+
+/// The disk of a kernel around a receiver.
+///
+/// at: dpsm_plane of DPSM_FILTER_SHIFT; tangent: of the kernel's half-angle; light_tangent: of the
+/// light's, as the receiver sees it; rotation: a unit vector, of the first tap. Domain: as for
+/// dpsm_plane, 2^-24 <= tangent <= 1, 0 <= light_tangent <= 2^24. Bound: docs/filter.md.
+fn dpsm_filter_cone(
+    at: DpsmPlane,
+    tangent: f32,
+    light_tangent: f32,
+    rotation: vec2<f32>,
+) -> DpsmDisk {
+    let square = dot(at.uv, at.uv);
+    let r = sqrt(square);
+    let radius = tangent * (0.5 + 0.5 * square);
+    let across = rotation * radius;
+    let aside = vec2<f32>(-rotation.y, rotation.x);
+    let sine = length(at.lean);
+    // the nearest texel's centre lies up to half a diagonal away
+    let texel = DPSM_FILTER_SMALLEST * at.pitch;
+    let rise = max(DPSM_FILTER_OWN * at.cosine, DPSM_FILTER_GRAZING * sine) + texel * sine;
+    // the lean is to first order in the disk; this bounds the rest (docs/filter.md)
+    let reach = tangent + texel;
+    let within = 1.0 / (1.0 - 0.5 * min(r * reach, 1.0));
+    let curved = reach * reach * (0.5 * r + 0.25 * reach) * (within * within * within);
+    return DpsmDisk(
+        vec2<f32>(at.uv.x, -at.uv.y),
+        vec2<f32>(across.x, -across.y),
+        at.hemisphere,
+        at.facing + rise * at.pitch,
+        vec2<f32>(dot(at.lean, rotation), dot(at.lean, aside)) * tangent,
+        sine * curved,
+        at.height,
+        at.distance,
+        at.near,
+        tangent / max(DPSM_FILTER_CONE, DPSM_FILTER_WIDER * light_tangent),
+        texel / tangent,
+    );
+}
+
+/// A map in its texture: the coordinates of its middle, and what one unit of the disk is there.
+///
+/// Domain: hemisphere 0 or 1. Bound: middle as for dpsm_light_coordinates, unit 4.5 eps relative.
+fn dpsm_filter_map(light: DpsmLight, hemisphere: u32) -> vec4<f32> {
+    let middle = dpsm_light_coordinates(light, hemisphere, vec2<f32>(0.5));
+    let extent = select(vec2<f32>(1.0), light.rectangle.zw, light.placement == DPSM_ATLAS);
+    return vec4<f32>(middle, extent * (0.5 / (1.0 + light.guard)));
+}
+
+/// Where four taps of a disk read: texture coordinates, and in which map.
+struct DpsmFour {
+    s: vec4<f32>,
+    t: vec4<f32>,
+    /// Which lie beyond the rim, and read the other hemisphere's map.
+    crossed: vec4<bool>,
+}
+
+/// Where four taps read: those beyond the rim continue in the other map, at the inverse of their
+/// radius.
+///
+/// offset: of the first in the unit disk; own: the receiver's map; other: the middle of the other one
+/// along x. Domain: as for dpsm_filter_cone. Bound: docs/filter.md.
+fn dpsm_filter_places(
+    disk: DpsmDisk,
+    own: vec4<f32>,
+    other: f32,
+    offset: vec2<f32>,
+) -> DpsmFour {
+    let step = dpsm_filter_step(disk, offset);
+    let u = disk.place.x + vec4<f32>(step.x, step.y, -step.x, -step.y);
+    let v = disk.place.y + vec4<f32>(step.y, -step.x, -step.y, step.x);
+    let far = u * u + v * v;
+    let inward = 1.0 / max(far, vec4<f32>(1.0));
+    let crossed = far > vec4<f32>(1.0);
+    return DpsmFour(
+        select(vec4<f32>(own.x), vec4<f32>(other), crossed) + u * inward * own.z,
+        own.y + v * inward * own.w,
+        crossed,
+    );
+}
+
+/// How far a tap's place is from the receiver's.
+///
+/// Domain: |offset| <= 1. Bound: 3 eps of the kernel's radius absolute.
+fn dpsm_filter_step(disk: DpsmDisk, offset: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(
+        disk.right.x * offset.x + disk.right.y * offset.y,
+        disk.right.y * offset.x - disk.right.x * offset.y,
+    );
+}
+
+/// What a tap that lies where a hemispherical light has no map reads: nearer than all.
+const DPSM_FILTER_UNMAPPED: f32 = -1.0;
+
+/// The layers of a receiver's own map and of the other one.
+///
+/// Domain: hemisphere 0 or 1. Exact.
+fn dpsm_filter_layers(light: DpsmLight, hemisphere: u32) -> vec2<u32> {
+    let other = DPSM_BACK - hemisphere;
+    return vec2<u32>(dpsm_light_layer(light, hemisphere), dpsm_light_layer(light, other));
+}
+
+/// Which of four taps are lit: no nearer than the receiver's plane.
+///
+/// offset: of the first in the unit disk; ring: its length; reach: the distances stored in the texels
+/// that they read, in the disk's units. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_lit(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    reach: vec4<f32>,
+) -> vec4<bool> {
+    let along = disk.lean.x * offset.x + disk.lean.y * offset.y;
+    let aside = disk.lean.y * offset.x - disk.lean.x * offset.y;
+    let facing = (disk.facing + disk.rest * ring) + vec4<f32>(along, aside, -along, -aside);
+    return reach * facing >= vec4<f32>(disk.height);
+}
+
+/// Which of four taps lie within the bias cone: so much nearer than the receiver that they shadow it
+/// though they lie beside its direction.
+///
+/// ring: their radius in the unit disk. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_within(disk: DpsmDisk, ring: f32, reach: vec4<f32>) -> vec4<bool> {
+    return reach * (1.0 + disk.steep * ring) < vec4<f32>(disk.distance);
+}
+
+/// The share of the light by the sum of what taps say: of those that say anything; 0 where none
+/// does.
+///
+/// sum: 1 for each lit tap, DPSM_FILTER_DARK for each in shadow. Domain: fewer than
+/// DPSM_FILTER_DARK taps. Bound: 2.5 eps relative.
+fn dpsm_filter_share(sum: vec4<f32>) -> f32 {
+    let all = dot(sum, vec4<f32>(1.0));
+    let dark = floor(all / DPSM_FILTER_DARK);
+    let lit = all - DPSM_FILTER_DARK * dark;
+    return lit / max(lit + dark, 1.0);
+}
+
+/// What four taps of a kernel say, to be summed.
+///
+/// offset, ring, stored: as for dpsm_filter_lit, stored depths. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_even(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> vec4<f32> {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    return select(says, vec4<f32>(1.0), lit);
+}
+
+/// The radius of a ring by the share of those farther in, and by its square.
+const DPSM_FILTER_DENSE: vec2<f32> = vec2<f32>(0.68, 0.32);
+
+/// The radius of a ring of taps that lie the denser the nearer they are to the middle: about the
+/// share of those farther in, to the power of 5/4.
+///
+/// Domain: shares in [0, 1]. Bound: 3 eps relative.
+fn dpsm_filter_dense(share: f32) -> f32 {
+    return share * (DPSM_FILTER_DENSE.x + DPSM_FILTER_DENSE.y * share);
+}
+
+/// What a kernel of fixed size has found so far.
+struct DpsmContact {
+    /// The sum of what its taps say.
+    sum: vec4<f32>,
+    /// The distance of the blocker that is farthest from the light, 0 before there is one.
+    farthest: f32,
+}
+
+/// What was found so far, and a ring more: nothing beyond what the farthest blocker asks for, so
+/// that the kernel narrows towards contact.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone, of a light under
+/// the kernel's own tangent.
+fn dpsm_filter_contact(
+    found: DpsmContact,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> DpsmContact {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let blocks = select(select(vec4<f32>(0.0), reach, dark), vec4<f32>(0.0), lit);
+    let blocked = max(max(blocks.x, blocks.y), max(blocks.z, blocks.w));
+    let farthest = max(found.farthest, blocked);
+    // ring <= distance / farthest - 1 + least
+    let counted = farthest * (1.0 + ring - disk.least) <= disk.distance;
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    let said = select(says, vec4<f32>(1.0), lit);
+    return DpsmContact(found.sum + select(vec4<f32>(0.0), said, counted), farthest);
+}
+
+// dpsm::pcss
 
 /// What a search found.
 struct DpsmBlockers {
-    /// Sum over the blockers of the tangent of the cone that each asks for.
-    tangents: f32,
-    /// Taps that found a blocker.
-    count: u32,
-    /// Taps that lie where a hemispherical light has no map.
-    unmapped: u32,
+    /// The farthest blocker's stored depth among the first taps of all rings, the second ones, and so
+    /// on; below 0 where there is none.
+    farthest: vec4<f32>,
+    /// Whether they were all lit.
+    all: vec4<bool>,
 }
 
 /// The tangent of the cone in which a caster at the distance `blocker` from the light shades a
@@ -540,47 +901,62 @@ struct DpsmBlockers {
 /// behind.
 ///
 /// Domain: 0 <= radius <= 2^62, distances in [2^-51, 2^62]. Bound: 6.5 eps relative, and eps of
-/// distance / (distance - blocker) for the difference. At most DPSM_PCSS_WIDEST.
+/// distance / (distance - blocker) for the difference. At most DPSM_FILTER_WIDEST.
 fn dpsm_pcss_tangent(distance: f32, blocker: f32, radius: f32) -> f32 {
     let behind = max(distance - blocker, 0.0) / max(distance, DPSM_SMALLEST);
-    return min(behind * (radius / max(blocker, DPSM_SMALLEST)), DPSM_PCSS_WIDEST);
+    return min(behind * (radius / max(blocker, DPSM_SMALLEST)), DPSM_FILTER_WIDEST);
 }
 
-/// What was found so far, and one tap more: a blocker where its texel stores less than it compares.
+/// The radius of a ring of a search: the square of the share of taps farther in, so that most lie
+/// where blockers near the receiver are.
 ///
-/// stored: the texel's depth. Domain: as for dpsm_filter_lookup.
+/// Domain: shares in [0, 1]. Bound: eps relative.
+fn dpsm_pcss_ring(share: f32) -> f32 {
+    return share * share;
+}
+
+/// What was found so far, and a ring more.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone.
 fn dpsm_pcss_found(
     found: DpsmBlockers,
-    stored: f32,
-    at: DpsmLookup,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    radius: f32,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
 ) -> DpsmBlockers {
-    if !at.mapped {
-        return DpsmBlockers(found.tangents, found.count, found.unmapped + 1u);
-    }
-    if stored >= at.depth {
-        return found;
-    }
-    let blocker = dpsm_distance(stored, light.near, light.far);
-    let tangent = dpsm_pcss_tangent(receiver.distance, blocker, radius);
-    return DpsmBlockers(found.tangents + tangent, found.count + 1u, found.unmapped);
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let blocks = dpsm_filter_within(disk, ring, reach) & !lit;
+    return DpsmBlockers(
+        max(found.farthest, select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, blocks)),
+        found.all & lit,
+    );
 }
 
-/// The kernel's tangent that the blockers ask for, the mean of theirs; a texel's at least.
+/// The kernel's tangent that the farthest blocker asks for; half a texel's diagonal at least.
 ///
-/// pitch: the angle of a texel at the receiver. Domain: found.count <= 2^24. Bound: 2.5 eps
-/// relative, for one division.
-fn dpsm_pcss_width(found: DpsmBlockers, pitch: f32) -> f32 {
-    return max(found.tangents / max(f32(found.count), 1.0), pitch);
+/// distance: the receiver's; pitch: the angle of a texel there; radius: the light's. Domain: as for
+/// dpsm_pcss_tangent. Bound: docs/filter.md.
+fn dpsm_pcss_width(
+    found: DpsmBlockers,
+    distance: f32,
+    pitch: f32,
+    radius: f32,
+    light: DpsmLight,
+) -> f32 {
+    let each = found.farthest;
+    let farthest = max(max(each.x, each.y), max(each.z, each.w));
+    let blocker = dpsm_distance(farthest, light.near, light.far);
+    let asked = select(0.0, dpsm_pcss_tangent(distance, blocker, radius), farthest >= 0.0);
+    return min(max(asked, DPSM_FILTER_SMALLEST * pitch), DPSM_FILTER_WIDEST);
 }
 
 // dpsm::raw
 /// The filters for maps in a colour texture, by loads and without a comparison sampler: for targets
 /// that cannot read a depth texture's raw values (GLSL), or cannot compare.
 ///
-/// The red channel holds the stored depth. Each function is that of its name in filter or pcss:
+/// The red channel holds the stored depth. Each function is that of its name in plane, filter or pcss:
 /// what they do, their domains and bounds are the same, but for linear taps, whose weights here are
 /// exact in f32.
 
@@ -664,27 +1040,114 @@ fn dpsm_raw_pcf(
     return select(0.0, sum / f32(side * side), own.mapped);
 }
 
+/// dpsm_visibility_plane by loads.
+fn dpsm_raw_plane(
+    maps: texture_2d_array<f32>,
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> f32 {
+    let at = dpsm_plane(p, receiver, DPSM_PLANE_SHIFT, light, quantum, tolerance);
+    let four = dpsm_plane_four(at, light);
+    let st = dpsm_light_coordinates(light, at.hemisphere, (four.xy + 1.0) / light.size);
+    let first = floor(st * vec2<f32>(textureDimensions(maps)) - 0.5);
+    let layer = dpsm_light_layer(light, at.hemisphere);
+    let across = vec2<f32>(0.0, 1.0);
+    let stored = vec4<f32>(
+        dpsm_raw_load(maps, first + across.xy, layer),
+        dpsm_raw_load(maps, first + across.yy, layer),
+        dpsm_raw_load(maps, first + across.yx, layer),
+        dpsm_raw_load(maps, first, layer),
+    );
+    return select(0.0, dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres);
+}
+
+/// dpsm_filter_read by loads.
+fn dpsm_raw_read(
+    maps: texture_2d_array<f32>,
+    at: DpsmFour,
+    layers: vec2<u32>,
+    mapped: vec2<bool>,
+) -> vec4<f32> {
+    let layer = select(vec4<u32>(layers.x), vec4<u32>(layers.y), at.crossed);
+    let size = vec2<f32>(textureDimensions(maps));
+    let stored = vec4<f32>(
+        dpsm_raw_load(maps, floor(vec2<f32>(at.s.x, at.t.x) * size), layer.x),
+        dpsm_raw_load(maps, floor(vec2<f32>(at.s.y, at.t.y) * size), layer.y),
+        dpsm_raw_load(maps, floor(vec2<f32>(at.s.z, at.t.z) * size), layer.z),
+        dpsm_raw_load(maps, floor(vec2<f32>(at.s.w, at.t.w) * size), layer.w),
+    );
+    let known = select(vec4<bool>(mapped.x), vec4<bool>(mapped.y), at.crossed);
+    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, known);
+}
+
+/// dpsm_filter_sum by loads.
+fn dpsm_raw_sum(
+    maps: texture_2d_array<f32>,
+    disk: DpsmDisk,
+    light: DpsmLight,
+    rings: u32,
+) -> f32 {
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var sum = vec4<f32>();
+    var index = 0u;
+    while index < rings {
+        let ring = sqrt(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        sum += dpsm_filter_even(disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
+        index += 1u;
+    }
+    return dpsm_filter_share(sum);
+}
+
 /// dpsm_filter_disk by loads.
 fn dpsm_raw_disk(
     maps: texture_2d_array<f32>,
+    p: vec3<f32>,
     receiver: DpsmReceiver,
-    kernel: DpsmKernel,
+    tangent: f32,
     light: DpsmLight,
     taps: DpsmTaps,
     rotation: vec2<f32>,
 ) -> f32 {
-    let reader = dpsm_filter_reader(receiver, light, taps);
-    var sum = 0.0;
-    var direction = rotation;
+    let at = dpsm_plane(p, receiver, DPSM_FILTER_SHIFT, light, taps.quantum, taps.tolerance);
+    let wide = min(max(tangent, DPSM_FILTER_SMALLEST * at.pitch), DPSM_FILTER_WIDEST);
+    let disk = dpsm_filter_cone(at, wide, wide, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var found = DpsmContact(vec4<f32>(), 0.0);
     var index = 0u;
-    while index < taps.count {
-        let offset = direction * dpsm_kernel_ring(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        sum += dpsm_raw_tap(maps, reader, tap, light);
-        direction = dpsm_kernel_turn(direction);
+    while index < rings {
+        let ring = dpsm_filter_dense(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        found = dpsm_filter_contact(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
         index += 1u;
     }
-    return sum / f32(taps.count);
+    return dpsm_filter_share(found.sum);
 }
 
 /// dpsm_filter_mirror by loads.
@@ -737,26 +1200,28 @@ fn dpsm_raw_reproject(
 /// dpsm_pcss_search by loads.
 fn dpsm_raw_pcss_search(
     maps: texture_2d_array<f32>,
-    receiver: DpsmReceiver,
-    kernel: DpsmKernel,
+    disk: DpsmDisk,
     light: DpsmLight,
-    taps: DpsmTaps,
-    radius: f32,
-    rotation: vec2<f32>,
+    rings: u32,
 ) -> DpsmBlockers {
-    let hard = DpsmTaps(taps.count, DPSM_TAP_HARD, taps.quantum, taps.tolerance);
-    let reader = dpsm_filter_reader(receiver, light, hard);
-    let size = vec2<f32>(textureDimensions(maps));
-    var found = DpsmBlockers(0.0, 0u, 0u);
-    var direction = rotation;
+    let other = DPSM_BACK - disk.hemisphere;
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = vec2<bool>(disk.hemisphere < light.hemispheres, other < light.hemispheres);
+    let per = 1.0 / f32(rings);
+    var share = 0.5 * per;
+    var direction = vec2<f32>(1.0, 0.0);
+    var found = DpsmBlockers(vec4<f32>(DPSM_FILTER_UNMAPPED), vec4<bool>(true));
     var index = 0u;
-    while index < taps.count {
-        let offset = direction * dpsm_kernel_ring(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        let at = dpsm_filter_lookup(reader, tap, light);
-        let stored = dpsm_raw_load(maps, floor(at.coordinates * size), at.layer);
-        found = dpsm_pcss_found(found, stored, at, receiver, light, radius);
-        direction = dpsm_kernel_turn(direction);
+    while index < rings {
+        let ring = dpsm_pcss_ring(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        found = dpsm_pcss_found(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share += per;
         index += 1u;
     }
     return found;
@@ -773,12 +1238,18 @@ fn dpsm_raw_pcss(
     nearest: f32,
     rotation: vec2<f32>,
 ) -> f32 {
-    let pitch = dpsm_texel_pitch(dpsm_project_own(p), light.size, light.guard);
-    let search = dpsm_kernel(p, max(dpsm_pcss_tangent(receiver.distance, nearest, radius), pitch));
-    let found = dpsm_raw_pcss_search(maps, receiver, search, light, taps, radius, rotation);
-    if found.count == 0u && found.unmapped == 0u {
+    let at = dpsm_plane(p, receiver, DPSM_FILTER_SHIFT, light, taps.quantum, taps.tolerance);
+    let distance = receiver.distance;
+    let seen = radius / max(distance, DPSM_SMALLEST);
+    let smallest = min(DPSM_FILTER_SMALLEST * at.pitch, DPSM_FILTER_WIDEST);
+    let widest = max(dpsm_pcss_tangent(distance, nearest, radius), smallest);
+    let search = dpsm_filter_cone(at, widest, seen, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let found = dpsm_raw_pcss_search(maps, search, light, rings);
+    if all(found.all) {
         return 1.0;
     }
-    let kernel = dpsm_kernel(p, dpsm_pcss_width(found, pitch));
-    return dpsm_raw_disk(maps, receiver, kernel, light, taps, rotation);
+    let width = dpsm_pcss_width(found, distance, at.pitch, radius, light);
+    let disk = dpsm_filter_cone(at, width, seen, rotation);
+    return dpsm_raw_sum(maps, disk, light, rings);
 }

@@ -13,6 +13,7 @@ pub use error::FrameError;
 pub use exposure::{BACKGROUND, BRIGHTEST, CLIPPED, Linear, MOST_SAMPLES, WHITE, exposure, srgb};
 pub use extent::Extent;
 pub(crate) use extent::{common, nearest_of};
+pub use filter::rotation_at;
 pub use picture::Picture;
 pub use projection::{Projection, texel};
 pub use settings::{

@@ -7,7 +7,7 @@ mod common;
 
 use common::{device, rng, unit};
 use dpsm::accuracy::bits;
-use dpsm::gpu::{Evaluator, GpuError, Resources, Texels, comparison_sampler};
+use dpsm::gpu::{Evaluator, GpuError, Resources, Texels, comparison_sampler, point_sampler};
 use dpsm::render::Format;
 use dpsm::scalar::bias::*;
 use dpsm::scalar::float::{Vec2, Vec3};
@@ -166,13 +166,14 @@ fn sampling_functions_agree_with_their_ports() {
     let Some(device) = device() else { return };
     let texels = Texels::new(&device).unwrap();
     let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let point = point_sampler(&device).unwrap();
     let size = 64;
     for format in [Format::D16, Format::D24, Format::D32] {
         let mut rng = rng("sampling");
         let maps = random_maps(&mut rng, size, format, Sampling::Nearest);
         let texture = texels.upload(&device, &maps, format).unwrap();
         let view = array_view(&texture);
-        let resources = Resources { texture: &view, sampler: &sampler };
+        let resources = Resources { texture: &view, sampler: &sampler, point: &point };
         let light = DpsmLight {
             near: 0.1,
             far: 4.0,

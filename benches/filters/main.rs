@@ -33,6 +33,7 @@ import dpsm::filter::{
 import dpsm::kernel::{dpsm_kernel, dpsm_kernel_ring, dpsm_kernel_turn};
 import dpsm::light::{DpsmLight};
 import dpsm::pcss::{dpsm_pcss};
+import dpsm::plane::{dpsm_visibility_normal, dpsm_visibility_plane};
 import dpsm::visibility::{dpsm_visibility};
 
 const LIGHT = DpsmLight(
@@ -41,12 +42,12 @@ const LIGHT = DpsmLight(
 );
 const HARD = DpsmTaps(16u, 0u, 0.0, 0.0);
 const LINEAR = DpsmTaps(16u, 1u, 0.0, 0.0);
-const FIRST = vec2<f32>(1.0, 0.0);
+const FIRST = vec2<f32>(0.6, 0.8);
 const TANGENT = 0.02;
-
 fn pixel(
     maps: texture_depth_2d_array,
     comparison: sampler_comparison,
+    point: sampler,
     p: vec3<f32>,
     normal: vec3<f32>,
 ) -> f32 {
@@ -64,17 +65,7 @@ const VARIANTS: &[(&str, Sampling, &str, &str)] = &[
     (
         "disk 16",
         Sampling::Nearest,
-        "return dpsm_filter_disk(
-            maps, comparison, receiver, dpsm_kernel(p, TANGENT), LIGHT, HARD, FIRST,
-        );",
-        "naive 4 x 4",
-    ),
-    (
-        "disk 16, 2 x 2 taps",
-        Sampling::Linear,
-        "return dpsm_filter_disk(
-            maps, comparison, receiver, dpsm_kernel(p, TANGENT), LIGHT, LINEAR, FIRST,
-        );",
+        "return dpsm_filter_disk(maps, point, p, receiver, TANGENT, LIGHT, HARD, FIRST);",
         "naive 4 x 4",
     ),
     (
@@ -96,16 +87,14 @@ const VARIANTS: &[(&str, Sampling, &str, &str)] = &[
     (
         "disk 16 again",
         Sampling::Nearest,
-        "return dpsm_filter_disk(
-            maps, comparison, receiver, dpsm_kernel(p, TANGENT), LIGHT, HARD, FIRST,
-        );",
+        "return dpsm_filter_disk(maps, point, p, receiver, TANGENT, LIGHT, HARD, FIRST);",
         "reproject 16",
     ),
     (
         "pcss 16 + 16",
         Sampling::Nearest,
-        "return dpsm_pcss(maps, comparison, p, receiver, LIGHT, HARD, 0.1, 1.0, FIRST);",
-        "disk 16",
+        "return dpsm_pcss(maps, point, p, receiver, LIGHT, HARD, 0.1, 1.0, FIRST);",
+        "naive 4 x 4",
     ),
     (
         "cube 16",
@@ -127,6 +116,18 @@ const VARIANTS: &[(&str, Sampling, &str, &str)] = &[
         "hardware 2 x 2, constant bias",
         Sampling::Linear,
         "return dpsm_visibility(maps, comparison, p, LIGHT, 0.01);",
+        "hardware 2 x 2, constant bias",
+    ),
+    (
+        "plane",
+        Sampling::Nearest,
+        "return dpsm_visibility_plane(maps, point, p, receiver, LIGHT, 0.0, 0.0);",
+        "hardware 2 x 2, constant bias",
+    ),
+    (
+        "normal",
+        Sampling::Linear,
+        "return dpsm_visibility_normal(maps, comparison, p, receiver, LIGHT, 0.0, 0.0);",
         "hardware 2 x 2, constant bias",
     ),
     (
@@ -196,6 +197,7 @@ fn times(device: &Device) -> Result<(), GpuError> {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
     });
+    let point = dpsm::gpu::point_sampler(device)?;
     let samplers = [
         comparison_sampler(device, Sampling::Nearest)?,
         comparison_sampler(device, Sampling::Linear)?,
@@ -217,7 +219,7 @@ fn times(device: &Device) -> Result<(), GpuError> {
             .enumerate()
             .map(|(index, evaluator)| {
                 let sampler = &samplers[usize::from(VARIANTS[index].1 == Sampling::Linear)];
-                let resources = Some(Resources { texture: &view, sampler });
+                let resources = Some(Resources { texture: &view, sampler, point: &point });
                 move |encoder: &mut wgpu::CommandEncoder, stamps: Stamps<'_>| {
                     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                         label: None,

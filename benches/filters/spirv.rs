@@ -105,8 +105,9 @@ fn counts(body: &str) -> Result<[usize; 2], String> {
     let entry = "
 @group(0) @binding(0) var the_maps: texture_depth_2d_array;
 @group(0) @binding(1) var the_sampler: sampler_comparison;
+@group(0) @binding(2) var the_point: sampler;
 @fragment fn main(@location(0) p: vec3<f32>, @location(1) n: vec3<f32>) -> @location(0) vec4<f32> {
-    return vec4<f32>(pixel(the_maps, the_sampler, p, n));
+    return vec4<f32>(pixel(the_maps, the_sampler, the_point, p, n));
 }";
     let text = format!("{}{entry}", linked.text);
     let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.to_string())?;

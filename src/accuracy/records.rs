@@ -3,9 +3,10 @@
 use crate::reflect::{Kind, Shape, Signature};
 use crate::scalar::bias::dpsm_receiver;
 use crate::scalar::classify::dpsm_classify_part;
-use crate::scalar::filter::{DpsmTaps, dpsm_filter_reader};
+use crate::scalar::filter::{DpsmTaps, dpsm_filter_cone, dpsm_filter_reader};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::kernel::dpsm_kernel;
+use crate::scalar::plane::{DpsmPlane, dpsm_plane};
 use crate::scalar::ports::{Flat, Word};
 use crate::scalar::triangle::dpsm_triangle;
 use fastrand::Rng;
@@ -139,10 +140,38 @@ impl Records {
                     let receiver = dpsm_receiver(point(rng, -24, 24), unit(rng));
                     dpsm_filter_reader(receiver, light(rng), taps).write(&mut words);
                 }
-                ("found", 3) => (rng.f32(), rng.u32(0..64), rng.u32(0..64)).write(&mut words),
-                ("at", 6) => {
-                    let (layer, mapped) = (rng.u32(0..2), rng.u32(0..4) > 0);
-                    (disk_a, rng.f32(), layer, layer, mapped).write(&mut words);
+                ("found", 8) => {
+                    let each = |rng: &mut Rng| if rng.bool() { rng.f32() } else { -1.0 };
+                    let farthest = [0; 4].map(|_| each(rng));
+                    (farthest, [0; 4].map(|_| rng.bool())).write(&mut words);
+                }
+                ("found", 5) => {
+                    let sum = [0; 4].map(|_| (rng.u32(0..4) * 1024 + rng.u32(0..4)) as f32);
+                    (sum, rng.f32()).write(&mut words);
+                }
+                ("at", 11) => plane(rng).write(&mut words),
+                ("disk", 14) => {
+                    let rotation = unit(rng).xy();
+                    let rotation = rotation / rotation.length().max(0.5);
+                    dpsm_filter_cone(plane(rng), spread(rng, -12, 0).abs(), rng.f32(), rotation)
+                        .write(&mut words);
+                }
+                ("four", 4) => {
+                    [map * rng.f32(), map * rng.f32()].map(f32::floor).write(&mut words);
+                    [rng.f32(), rng.f32()].write(&mut words);
+                }
+                ("sum", 4) => {
+                    [0; 4].map(|_| (rng.u32(0..4) * 1024 + rng.u32(0..4)) as f32).write(&mut words);
+                }
+                ("stored" | "reach" | "own", 4) => {
+                    [0; 4].map(|_| rng.f32()).write(&mut words);
+                }
+                ("ring" | "share" | "other", 1) => rng.f32().write(&mut words),
+                ("shift", 1) => uniform(rng, 0.0, 1.5).write(&mut words),
+                ("light_tangent", 1) => spread(rng, -12, 4).abs().write(&mut words),
+                ("rotation", 2) => {
+                    let turn = unit(rng).xy();
+                    (turn / turn.length().max(0.5)).write(&mut words);
                 }
                 ("normal_z", 1) => uniform(rng, -1.0, 1.0).write(&mut words),
                 ("bow" | "bow_before" | "bow_after", 1) => {
@@ -190,6 +219,13 @@ impl Records {
         }
         words
     }
+}
+
+/// A receiver in its map.
+fn plane(rng: &mut Rng) -> DpsmPlane<f32> {
+    let p = point(rng, -24, 24);
+    let receiver = dpsm_receiver(p, unit(rng));
+    dpsm_plane(p, receiver, rng.f32(), light(rng), 1e-5 * rng.f32(), 1e-3 * rng.f32())
 }
 
 /// Any finite bits of a component of that type.

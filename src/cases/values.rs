@@ -443,11 +443,11 @@ values! {
         ("subnormal", [1e-40, 1e-41], "finite"),
         ("farthest", [HALF, LEAST], "1: the widest"),
     ]
-    COUNTS: u32, "Blockers found." [
-        ("none", 0, "the pitch"),
-        ("two", 2, "their mean"),
-        ("2^24", 1 << 24, "their mean"),
-        ("largest", u32::MAX, "their mean"),
+    COUNTS: u32, "Taps asked for." [
+        ("none", 0, "a ring of four"),
+        ("two", 2, "a ring of four"),
+        ("2^24", 1 << 24, "2^22 rings"),
+        ("largest", u32::MAX, "wraps around: one ring"),
     ]
     SINES: f32, "Sines of a hull's angles, beside cosines of 1/2." [
         ("right angle", 1.0, "a corner"),

@@ -68,9 +68,9 @@ pub struct SetupArguments {
     /// How the maps are drawn
     #[arg(long, value_enum, default_value = "single")]
     passes: PassesName,
-    /// How the maps are read
-    #[arg(long, value_enum, default_value = "hard")]
-    filter: FilterName,
+    /// How the maps are read; by default single, or hard with a bias that single does not take
+    #[arg(long, value_enum)]
+    filter: Option<FilterName>,
     /// For disk, mirror, reproject and pcss: taps of a kernel; for pcf: texels along its side
     #[arg(long, value_name = "N")]
     taps: Option<u32>,
@@ -95,10 +95,10 @@ pub struct SetupArguments {
     /// For filters with a kernel: each tap 2 x 2 texels
     #[arg(long)]
     linear_taps: bool,
-    /// What keeps surfaces from shadowing themselves in single lookups (hard, hardware) and, if
-    /// constant, in pcf; filters with a kernel compare planes
-    #[arg(long, value_enum, default_value = "texel-centre")]
-    bias: BiasName,
+    /// What keeps surfaces from shadowing themselves in single, hard, hardware and pcf: by default
+    /// plane, texel-centre, footprint and footprint; the other filters compare planes
+    #[arg(long, value_enum)]
+    bias: Option<BiasName>,
     /// For constant: the bias in units of depth; by default what 45 degrees incidence needs
     #[arg(long, value_name = "DEPTH", allow_negative_numbers = true)]
     constant_bias: Option<f32>,
@@ -167,6 +167,8 @@ fn parse_tau(text: &str) -> Result<f32, String> {
 /// Filters by their option names.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum FilterName {
+    /// Four texels, each lit, in shadow or undecided; a soft edge a texel wide
+    Single,
     /// One texel
     Hard,
     /// The hardware's 2 x 2 comparison
@@ -190,6 +192,10 @@ const NAIVE_SIDE: u32 = 4;
 /// Biases by their option names.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum BiasName {
+    /// For single: the receiver's plane at each of four texels
+    Plane,
+    /// For single: the receiver's own distance, by the hardware's comparisons
+    Normal,
     /// One for all receivers (Brabec 2002)
     Constant,
     /// What the receiver's plane changes over the texels that are read
@@ -218,6 +224,9 @@ impl Names {
     /// The names of a frame's settings.
     pub fn of(settings: &Settings) -> Self {
         let filter = match (settings.filter, settings.sampling) {
+            (Filter::Single, _) if matches!(settings.bias, Bias::Plane | Bias::Normal) => {
+                FilterName::Single
+            }
             (Filter::Single, Sampling::Nearest) => FilterName::Hard,
             (Filter::Single, Sampling::Linear) => FilterName::Hardware,
             (Filter::Naive(_), _) => FilterName::Pcf,
@@ -242,6 +251,8 @@ impl Names {
             }),
             filter: name(filter),
             bias: name(match settings.bias {
+                Bias::Plane => BiasName::Plane,
+                Bias::Normal => BiasName::Normal,
                 Bias::Constant(_) => BiasName::Constant,
                 Bias::Footprint => BiasName::Footprint,
                 Bias::TexelCentre => BiasName::TexelCentre,
@@ -276,6 +287,16 @@ impl MethodName {
 }
 
 impl SetupArguments {
+    /// The name of the filter that is asked for, or that the bias is for.
+    fn filter_name(&self) -> FilterName {
+        let other = !matches!(self.bias, None | Some(BiasName::Plane | BiasName::Normal));
+        let usual = match other || self.constant_bias.is_some() {
+            true => FilterName::Hard,
+            false => FilterName::Single,
+        };
+        self.filter.unwrap_or(usual)
+    }
+
     /// The filter that is asked for.
     fn filter(&self) -> Result<Filter, CliError> {
         let kernel = match (self.kernel_angle, self.kernel_radius) {
@@ -292,22 +313,24 @@ impl SetupArguments {
         let given = self.kernel_angle.is_some() || self.kernel_radius.is_some();
         let soft = self.light_size.is_some() || self.nearest.is_some();
         let unused = |options: &str| {
-            let message = format!("--filter {} takes no {options}", name(self.filter));
+            let message = format!("--filter {} takes no {options}", name(self.filter_name()));
             Err(CliError::Usage(message))
         };
         use FilterName as Name;
-        let of_cone = [Name::Disk, Name::Mirror, Name::Reproject].contains(&self.filter);
-        let single = [Name::Hard, Name::Hardware].contains(&self.filter);
+        let of_cone = [Name::Disk, Name::Mirror, Name::Reproject].contains(&self.filter_name());
+        let single = [Name::Single, Name::Hard, Name::Hardware].contains(&self.filter_name());
         match () {
             () if given && !of_cone => return unused("--kernel-angle or --kernel-radius"),
-            () if soft && self.filter != Name::Pcss => return unused("--light-size or --nearest"),
+            () if soft && self.filter_name() != Name::Pcss => {
+                return unused("--light-size or --nearest");
+            }
             () if single && self.taps.is_some() => return unused("--taps"),
             () if single && self.linear_taps => return unused("--linear-taps"),
             () => {}
         }
         let taps = Taps { count: self.taps.unwrap_or(TAPS), kernel };
-        Ok(match self.filter {
-            Name::Hard | Name::Hardware => Filter::Single,
+        Ok(match self.filter_name() {
+            Name::Single | Name::Hard | Name::Hardware => Filter::Single,
             Name::Pcf => Filter::Naive(self.taps.unwrap_or(NAIVE_SIDE)),
             Name::Disk => Filter::Disk(taps),
             Name::Mirror => Filter::Mirror(taps),
@@ -316,6 +339,47 @@ impl SetupArguments {
                 let (radius, nearest) = (self.light_size, self.nearest);
                 Filter::Soft { taps: taps.count, radius, nearest }
             }
+        })
+    }
+
+    /// The bias that is asked for, or that the filter is best with.
+    fn bias(&self) -> Result<Bias, CliError> {
+        use BiasName as Name;
+        let usual = match self.filter_name() {
+            FilterName::Hard if self.constant_bias.is_some() => Name::Constant,
+            FilterName::Hard => Name::TexelCentre,
+            FilterName::Hardware | FilterName::Pcf => Name::Footprint,
+            _ if self.constant_bias.is_some() => Name::Constant,
+            _ => Name::Plane,
+        };
+        let asked = self.bias.unwrap_or(usual);
+        let fits = match self.filter_name() {
+            FilterName::Single => matches!(asked, Name::Plane | Name::Normal),
+            FilterName::Hard | FilterName::Hardware => !matches!(asked, Name::Plane | Name::Normal),
+            _ => true,
+        };
+        if !fits {
+            let (bias, filter) = (name(asked), name(self.filter_name()));
+            let remedy = match self.filter_name() {
+                FilterName::Single => "plane or normal; --filter hard and hardware take the others",
+                _ => "another; plane and normal are for --filter single",
+            };
+            let message = format!("--bias {bias} is not for --filter {filter}: give {remedy}");
+            return Err(CliError::Usage(message));
+        }
+        Ok(match (asked, self.constant_bias) {
+            (Name::Constant, constant) => Bias::Constant(constant),
+            (other, Some(_)) => {
+                let other = name(other);
+                let message = format!("--constant-bias is for --bias constant, not {other}");
+                return Err(CliError::Usage(message));
+            }
+            (Name::Plane, None) => Bias::Plane,
+            (Name::Normal, None) => Bias::Normal,
+            (Name::Footprint, None) => Bias::Footprint,
+            (Name::TexelCentre, None) => Bias::TexelCentre,
+            (Name::TexelCentreOrOwn, None) => Bias::TexelCentreOrOwn,
+            (Name::NoNormal, None) => Bias::WITHOUT_NORMAL,
         })
     }
 
@@ -345,26 +409,15 @@ impl SetupArguments {
                 PassesName::Atlas => Passes::Atlas,
                 PassesName::Multiview => Passes::Multiview,
             },
-            sampling: match (self.filter, self.linear_taps) {
+            sampling: match (self.filter_name(), self.linear_taps) {
                 (FilterName::Hardware, _) => Sampling::Linear,
-                (FilterName::Hard, _) | (_, false) => Sampling::Nearest,
+                (FilterName::Single | FilterName::Hard, _) | (_, false) => Sampling::Nearest,
                 (_, true) => Sampling::Linear,
             },
             filter: self.filter()?,
             near: self.near,
             far: self.far,
-            bias: match (self.bias, self.constant_bias) {
-                (BiasName::Constant, constant) => Bias::Constant(constant),
-                (other, Some(_)) => {
-                    let other = name(other);
-                    let message = format!("--constant-bias is for --bias constant, not {other}");
-                    return Err(CliError::Usage(message));
-                }
-                (BiasName::Footprint, None) => Bias::Footprint,
-                (BiasName::TexelCentre, None) => Bias::TexelCentre,
-                (BiasName::TexelCentreOrOwn, None) => Bias::TexelCentreOrOwn,
-                (BiasName::NoNormal, None) => Bias::WITHOUT_NORMAL,
-            },
+            bias: self.bias()?,
             ..base
         };
         let scene = open(&self.scene, self.walls)?;

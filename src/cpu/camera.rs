@@ -5,7 +5,9 @@ use rayon::prelude::*;
 
 use super::surface::Surface;
 use super::{mix, opaque, pick, triangle};
-use crate::render::{Filter, Frame, Kernel, Linear, Lookup, Taps, Vertex, View, float};
+use crate::render::{
+    Filter, Frame, Kernel, Linear, Lookup, Taps, Vertex, View, float, rotation_at,
+};
 use crate::scalar::float::{self as scalar, Vec2, Vec4};
 use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::lights::{dpsm_lights_turn, dpsm_lights_visibility};
@@ -91,14 +93,14 @@ fn lights_pass(
     let seen = seen_by(frame, sample);
     let taps = frame.taps();
     let to_world = |v: scalar::Vec3<f32>| light.right * v.x + light.up * v.y + light.forward * v.z;
-    let first = Vec2::new(1.0, 0.0);
     let eye = dpsm_to_light(float(view.eye), *light);
-    color(&seen, settings.image, |triangle, weights| {
+    color(&seen, settings.image, |pixel, triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let world = light.position + to_world(surface.p);
         let tested = light.position + to_world(surface.receiver(frame, eye));
         let plane = to_world(surface.plane);
         let normal = to_world(surface.normal);
+        let rotation = rotation_at(pixel, sample.shift);
         let shaded = |own: &Frame, maps: &DepthMaps| {
             let light = own.light;
             let p = dpsm_to_light(world, light);
@@ -107,7 +109,7 @@ fn lights_pass(
                 Filter::Disk(Taps { kernel: Kernel::Tangent(tangent), .. }) => tangent * p.length(),
                 _ => 0.0,
             };
-            let share = dpsm_lights_visibility(maps, tested, plane, light, taps, radius, first);
+            let share = dpsm_lights_visibility(maps, tested, plane, light, taps, radius, rotation);
             let eye = dpsm_to_light(float(view.eye), light);
             let normal = dpsm_lights_turn(normal, light);
             let plane = dpsm_lights_turn(plane, light);
@@ -131,10 +133,14 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps, sample: &View) -> Linear {
         }
     };
     let eye = dpsm_to_light(float(view.eye), *light);
-    color(&seen, settings.image, |triangle, weights| {
+    color(&seen, settings.image, |pixel, triangle, weights| {
         let surface = Surface::new(frame, triangle, weights);
         let visibility = match settings.lookup {
-            Lookup::Pixel => frame.visibility(maps, surface.receiver(frame, eye), surface.plane),
+            Lookup::Pixel => {
+                let rotation = rotation_at(pixel, sample.shift);
+                let receiver = surface.receiver(frame, eye);
+                frame.visibility_turned(maps, receiver, surface.plane, rotation)
+            }
             Lookup::Vertex => {
                 let corners = frame.triangles[triangle as usize].map(|i| at_vertices[i as usize]);
                 let [fx, fy, bx, by, depth, hemisphere_value] = mix(weights, corners, |at| {
@@ -154,12 +160,14 @@ fn camera_pass(frame: &Frame, maps: &DepthMaps, sample: &View) -> Linear {
 fn color(
     seen: &[Visible],
     image: [u32; 2],
-    shade: impl Fn(u32, [f32; 3]) -> Vec3 + Sync,
+    shade: impl Fn([u32; 2], u32, [f32; 3]) -> Vec3 + Sync,
 ) -> Linear {
     let mut linear = Linear::empty(image);
-    linear.pixels.par_iter_mut().zip(seen).for_each(|(pixel, seen)| {
+    linear.pixels.par_iter_mut().zip(seen).enumerate().for_each(|(index, (pixel, seen))| {
         if let Some((triangle, weights)) = *seen {
-            *pixel = shade(triangle, weights).extend(1.0).to_array();
+            let index = index as u32;
+            let place = [index % image[0], index / image[0]];
+            *pixel = shade(place, triangle, weights).extend(1.0).to_array();
         }
     });
     linear

@@ -43,7 +43,7 @@ pub fn render(device: &Device, frame: &Frame) -> Result<Rendering, GpuError> {
     let (views, stored) = match frame.settings.views {
         true => (
             crate::cpu::views(frame, &mut timings),
-            Some(maps.download(device, frame.settings.sampling)?),
+            Some(maps.download(device, frame.settings.sampling_taken())?),
         ),
         false => (Vec::new(), None),
     };
@@ -56,7 +56,7 @@ pub fn make_maps(device: &Device, frame: &Frame) -> Result<DepthMaps, GpuError> 
     let maps = ShadowMaps::new(device, frame, &mesh)?;
     let encoder = device.encode("the maps", |encoder| maps.record(encoder, &mesh, None))?;
     device.submit("the maps", encoder)?;
-    maps.download(device, frame.settings.sampling)
+    maps.download(device, frame.settings.sampling_taken())
 }
 
 fn check_image(device: &Device, image: [u32; 2]) -> Result<(), GpuError> {
@@ -77,6 +77,7 @@ struct Camera<'a> {
     uniforms: Vec<wgpu::Buffer>,
     constants: [(&'static str, f64); 2],
     sampler: wgpu::Sampler,
+    point: wgpu::Sampler,
     lights: wgpu::Buffer,
     maps: &'a ShadowMaps,
     /// Width and height.
@@ -95,11 +96,12 @@ impl<'a> Camera<'a> {
         };
         let uniforms = frame.settings.places().iter().map(uniform).collect::<Result<_, _>>()?;
         let constants = constants(frame);
-        let sampler = comparison_sampler(device, frame.settings.sampling)?;
+        let sampler = comparison_sampler(device, frame.settings.sampling_taken())?;
+        let point = point_sampler(device)?;
         let all: Vec<u32> = maps.lights.iter().flat_map(light_words).collect();
         let bytes = bytemuck::cast_slice(&all);
         let lights = device.upload("light bytes", bytes, wgpu::BufferUsages::STORAGE)?;
-        Ok(Self { module, uniforms, constants, sampler, lights, maps, image })
+        Ok(Self { module, uniforms, constants, sampler, point, lights, maps, image })
     }
 
     /// The mean of each pixel's samples, and the time of the first of them.
@@ -124,11 +126,10 @@ impl<'a> Camera<'a> {
                 view_formats: &[],
             })
         };
-        let many = stages.contains(&"lights_fragment");
         let (color, depth, groups) = device.step(NAME, || {
             let color = target(COLOR, wgpu::TextureUsages::COPY_SRC);
             let depth = target(DEPTH, wgpu::TextureUsages::empty());
-            let group = |uniform| self.group(device, &pipeline, uniform, mesh, many);
+            let group = |uniform| self.group(device, &pipeline, uniform, mesh, stages);
             (color, depth, self.uniforms.iter().map(group).collect::<Vec<_>>())
         })?;
         let color_view = color.create_view(&Default::default());
@@ -201,7 +202,7 @@ impl<'a> Camera<'a> {
         pipeline: &wgpu::RenderPipeline,
         uniform: &wgpu::Buffer,
         mesh: &MeshBuffers,
-        many: bool,
+        stages: [&str; 2],
     ) -> wgpu::BindGroup {
         let lights = wgpu::BindGroupEntry { binding: 7, resource: self.lights.as_entire_binding() };
         let mut entries = vec![
@@ -210,16 +211,23 @@ impl<'a> Camera<'a> {
                 binding: 1,
                 resource: wgpu::BindingResource::TextureView(&self.maps.view),
             },
-            wgpu::BindGroupEntry {
-                binding: 2,
-                resource: wgpu::BindingResource::Sampler(&self.sampler),
-            },
             wgpu::BindGroupEntry { binding: 3, resource: mesh.positions.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 4, resource: mesh.indices.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 5, resource: mesh.surfaces.as_entire_binding() },
             wgpu::BindGroupEntry { binding: 6, resource: mesh.masks.as_entire_binding() },
         ];
-        entries.extend(many.then_some(lights));
+        let [_, fragment] = stages;
+        let samplers = [(2, &self.sampler), (9, &self.point)];
+        let used = samplers.into_iter().filter(|(binding, _)| match fragment {
+            "pixel_lookup_fragment" => true,
+            "lights_fragment" => *binding == 9,
+            _ => *binding == 2,
+        });
+        entries.extend(used.map(|(binding, sampler)| wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::Sampler(sampler),
+        }));
+        entries.extend((fragment == "lights_fragment").then_some(lights));
         device.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("camera"),
             layout: &pipeline.get_bind_group_layout(0),
@@ -242,6 +250,15 @@ pub fn comparison_sampler(device: &Device, sampling: Sampling) -> Result<wgpu::S
             compare: Some(wgpu::CompareFunction::LessEqual),
             ..Default::default()
         })
+    })
+}
+
+/// The sampler that reads stored depths as they are: the nearest texel, or the four around a corner.
+pub fn point_sampler(device: &Device) -> Result<wgpu::Sampler, GpuError> {
+    device.step("the point sampler", || {
+        device
+            .device
+            .create_sampler(&wgpu::SamplerDescriptor { label: Some("point"), ..Default::default() })
     })
 }
 

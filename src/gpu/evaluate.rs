@@ -21,8 +21,10 @@ const WORKGROUP: u32 = 256;
 pub struct Resources<'a> {
     /// Bound to every texture argument.
     pub texture: &'a wgpu::TextureView,
-    /// Bound to every sampler argument.
+    /// Bound to every comparison sampler argument.
     pub sampler: &'a wgpu::Sampler,
+    /// Bound to every other sampler argument: `point_sampler`.
+    pub point: &'a wgpu::Sampler,
 }
 
 /// A function compiled for evaluation on one device.
@@ -193,6 +195,9 @@ impl<'a> Evaluator<'a> {
         for ((_, shape), binding) in bound.zip(2..) {
             let Some(resources) = resources else { continue };
             let resource = match shape {
+                Shape::Sampler(ty) if ty == "sampler" => {
+                    wgpu::BindingResource::Sampler(resources.point)
+                }
                 Shape::Sampler(_) => wgpu::BindingResource::Sampler(resources.sampler),
                 _ => wgpu::BindingResource::TextureView(resources.texture),
             };

@@ -1,6 +1,6 @@
 //! The shader of the camera passes and what it is told; the shadow test alone at given points.
 
-use super::camera::comparison_sampler;
+use super::camera::{comparison_sampler, point_sampler};
 use super::maps::ShadowMaps;
 use super::passes::{light_words, shader, uniform_buffer};
 use super::timer::{ALONE, Stamps, render_writes};
@@ -79,6 +79,8 @@ pub fn constants(frame: &Frame) -> [(&'static str, f64); 2] {
         Bias::TexelCentre => 2,
         Bias::WithoutNormal(_) => 3,
         Bias::TexelCentreOrOwn => 4,
+        Bias::Plane => 5,
+        Bias::Normal => 6,
     };
     [("filtering", filter.into()), ("bias_kind", bias.into())]
 }
@@ -123,7 +125,8 @@ impl PointTests {
         points: &wgpu::Buffer,
     ) -> Result<PointTest, GpuError> {
         let uniform = camera_uniform(device, frame, &frame.view, &maps.lights[0])?;
-        let sampler = comparison_sampler(device, frame.settings.sampling)?;
+        let sampler = comparison_sampler(device, frame.settings.sampling_taken())?;
+        let point = point_sampler(device)?;
         let fragment = match frame.settings.method.projection() {
             Projection::Paraboloid => "test_fragment",
             Projection::Cube => "cube_test_fragment",
@@ -138,16 +141,19 @@ impl PointTests {
         device.step("the shadow test", || {
             let pipeline = self.pipeline(device, fragment, &constants);
             let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
-            let entries = [
+            let mut entries = vec![
                 (0, uniform.as_entire_binding()),
                 (1, wgpu::BindingResource::TextureView(&maps.view)),
                 (2, wgpu::BindingResource::Sampler(&sampler)),
                 (8, points.as_entire_binding()),
             ];
+            if fragment == "test_fragment" {
+                entries.push((9, wgpu::BindingResource::Sampler(&point)));
+            }
             let group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(fragment),
                 layout: &pipeline.get_bind_group_layout(0),
-                entries: &entries.map(entry),
+                entries: &entries.into_iter().map(entry).collect::<Vec<_>>(),
             });
             let target = device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(fragment),

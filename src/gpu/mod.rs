@@ -13,7 +13,7 @@ mod steps;
 mod texels;
 mod timer;
 
-pub use camera::{comparison_sampler, make_maps, render};
+pub use camera::{comparison_sampler, make_maps, point_sampler, render};
 pub use evaluate::{Evaluation, Evaluator, Resources, entry_point};
 pub use lookup::{PointTest, PointTests};
 pub use maps::{Parts, ShadowMaps};

@@ -7,7 +7,7 @@ use crate::scalar::filter::{
     dpsm_filter_pcf, dpsm_filter_reproject,
 };
 use crate::scalar::float::{Vec2, Vec3};
-use crate::scalar::kernel::dpsm_kernel;
+use crate::scalar::kernel::{dpsm_kernel, dpsm_kernel_rotation};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scalar::paraboloid::dpsm_project_own;
 use crate::scalar::pcss::dpsm_pcss;
@@ -70,7 +70,13 @@ impl Frame {
     }
 
     /// The filtered share of the light, by any filter but a single lookup.
-    pub(super) fn filtered(&self, maps: &DepthMaps, p: Vec3<f32>, normal: Vec3<f32>) -> f32 {
+    pub(super) fn filtered(
+        &self,
+        maps: &DepthMaps,
+        p: Vec3<f32>,
+        normal: Vec3<f32>,
+        rotation: Vec2<f32>,
+    ) -> f32 {
         let light = self.light;
         let receiver = dpsm_receiver(p, normal);
         let taps = self.taps();
@@ -89,8 +95,8 @@ impl Frame {
                 dpsm_filter_pcf(maps, p, light, side, bias)
             }
             Filter::Disk(Taps { kernel, .. }) => {
-                let kernel = dpsm_kernel(p, kernel.tangent(receiver.distance));
-                dpsm_filter_disk(maps, receiver, kernel, light, taps, first)
+                let tangent = kernel.tangent(receiver.distance);
+                dpsm_filter_disk(maps, p, receiver, tangent, light, taps, rotation)
             }
             Filter::Mirror(Taps { kernel, .. }) => {
                 let kernel = dpsm_kernel(p, kernel.tangent(receiver.distance));
@@ -102,8 +108,18 @@ impl Frame {
             }
             Filter::Soft { .. } => {
                 let [radius, nearest] = self.soft();
-                dpsm_pcss(maps, p, receiver, light, taps, radius, nearest, first)
+                dpsm_pcss(maps, p, receiver, light, taps, radius, nearest, rotation)
             }
         }
     }
+}
+
+/// The direction of a kernel's first tap at a pixel, whose samples each have their own: `shift` is
+/// that of the sample's view.
+pub fn rotation_at([x, y]: [u32; 2], shift: [f32; 2]) -> Vec2<f32> {
+    if shift == [0.0; 2] {
+        return dpsm_kernel_rotation([x, y]);
+    }
+    let cell = [u32::from(shift[0] < 0.0), u32::from(shift[1] > 0.0)];
+    dpsm_kernel_rotation([2 * x + cell[0], 2 * y + cell[1]])
 }

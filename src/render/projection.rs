@@ -18,6 +18,7 @@ use crate::scalar::maps::{DepthMaps, Maps};
 use crate::scalar::paraboloid::{
     dpsm_project, dpsm_project_own, dpsm_texel_pitch, dpsm_texture_to_disk, dpsm_unproject,
 };
+use crate::scalar::plane::{dpsm_visibility_normal, dpsm_visibility_plane};
 use crate::scalar::visibility::{DpsmLookup, dpsm_lookup};
 
 /// How a method's maps hold the directions around a light.
@@ -48,8 +49,31 @@ impl Frame {
     /// `p`: light-space position; `normal`: the surface's own there, in light space, of any length
     /// and side; zero where it is not known.
     pub fn visibility(&self, maps: &DepthMaps, p: Vec3<f32>, normal: Vec3<f32>) -> f32 {
+        self.visibility_turned(maps, p, normal, Vec2::new(1.0, 0.0))
+    }
+
+    /// The same where a kernel's first tap has a direction of its own, a unit vector.
+    pub fn visibility_turned(
+        &self,
+        maps: &DepthMaps,
+        p: Vec3<f32>,
+        normal: Vec3<f32>,
+        rotation: Vec2<f32>,
+    ) -> f32 {
         if self.settings.filter != Filter::Single {
-            return self.filtered(maps, p, normal);
+            return self.filtered(maps, p, normal, rotation);
+        }
+        let (light, quantum) = (self.light, self.settings.format.quantum());
+        let [_, tolerance] = self.settings.tolerances();
+        let receiver = dpsm_receiver(p, normal);
+        match self.settings.bias_taken() {
+            Bias::Plane => {
+                return dpsm_visibility_plane(maps, p, receiver, light, quantum, tolerance);
+            }
+            Bias::Normal => {
+                return dpsm_visibility_normal(maps, p, receiver, light, quantum, tolerance);
+            }
+            _ => {}
         }
         let at = self.lookup(p, normal);
         match at.mapped {
@@ -58,7 +82,8 @@ impl Frame {
         }
     }
 
-    /// Where the shadow test looks, and the depth that it compares, less the frame's bias.
+    /// Where the shadow test looks, and the depth that it compares, less the frame's bias; for `Plane`
+    /// and `Normal`, which compare several, that of their texels' footprint.
     pub fn lookup(&self, p: Vec3<f32>, normal: Vec3<f32>) -> DpsmLookup<f32> {
         let (settings, light) = (&self.settings, self.light);
         let quantum = settings.format.quantum();
@@ -81,7 +106,9 @@ impl Frame {
                             p, receiver, light, quantum, tolerance,
                         );
                     }
-                    Bias::Footprint => dpsm_bias_footprint(receiver, uv, texels, light),
+                    Bias::Footprint | Bias::Plane | Bias::Normal => {
+                        dpsm_bias_footprint(receiver, uv, texels, light)
+                    }
                     Bias::WithoutNormal(cosine) => {
                         dpsm_bias_without_normal(p.length(), cosine, uv, texels, light)
                     }
@@ -100,7 +127,9 @@ impl Frame {
                 Bias::TexelCentreOrOwn => {
                     dpsm_cube_lookup_along_centre(p, receiver, receiver.distance, light, quantum)
                 }
-                Bias::Footprint => dpsm_cube_lookup_footprint(p, receiver, texels, light, quantum),
+                Bias::Footprint | Bias::Plane | Bias::Normal => {
+                    dpsm_cube_lookup_footprint(p, receiver, texels, light, quantum)
+                }
                 Bias::WithoutNormal(cosine) => {
                     dpsm_cube_lookup_without_normal(p, cosine, texels, light, quantum)
                 }

@@ -110,8 +110,17 @@ pub enum Lookup {
 }
 
 /// What keeps surfaces from shadowing themselves.
+///
+/// `Plane` and `Normal` are lookups of their own: they read 2 x 2 texels, whatever
+/// `Settings::sampling` says. A cube's maps are read by `Footprint` of 2 x 2 texels in their place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bias {
+    /// `dpsm_visibility_plane`: four texels, each lit, in shadow or undecided against the receiver's
+    /// plane.
+    Plane,
+    /// `dpsm_visibility_normal`: the same against the receiver's own distance, by the hardware's
+    /// comparisons.
+    Normal,
     /// A constant in units of depth, at the receiver; by default `constant_bias`.
     Constant(Option<f32>),
     /// By the receiver's plane, over the texels that are read.
@@ -296,7 +305,7 @@ impl Default for Settings {
             exposure: None,
             near: None,
             far: None,
-            bias: Bias::TexelCentre,
+            bias: Bias::Plane,
             views: false,
         }
     }
@@ -389,18 +398,29 @@ impl Settings {
 
     /// The bias's window: half the side, in texels, of the square that holds the centres read.
     pub fn window(&self) -> f32 {
-        match self.sampling {
+        match self.sampling_taken() {
             Sampling::Nearest => 0.5,
             Sampling::Linear => 1.0,
         }
     }
 
-    /// The bias that is taken: one depth for 2 x 2 texels cannot follow each one's centre, and
-    /// lookups by vertex know no plane.
+    /// How the maps are sampled: what reads 2 x 2 texels of itself takes them.
+    pub fn sampling_taken(&self) -> Sampling {
+        match (self.filter, self.bias, self.lookup) {
+            (Filter::Single, Bias::Plane | Bias::Normal, Lookup::Pixel) => Sampling::Linear,
+            _ => self.sampling,
+        }
+    }
+
+    /// The bias that is taken: one depth for 2 x 2 texels cannot follow each one's centre, lookups by
+    /// vertex know no plane, and a cube's are `Footprint` in place of `Plane` and `Normal`.
     pub fn bias_taken(&self) -> Bias {
         match (self.bias, self.sampling, self.lookup) {
             (Bias::Constant(_), _, _) => self.bias,
             (_, _, Lookup::Vertex) => Bias::Constant(None),
+            (Bias::Plane | Bias::Normal, _, _) if self.method.projection() == Projection::Cube => {
+                Bias::Footprint
+            }
             (Bias::TexelCentre | Bias::TexelCentreOrOwn, Sampling::Linear, _) => Bias::Footprint,
             (bias, _, _) => bias,
         }

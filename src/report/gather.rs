@@ -240,7 +240,7 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
 
 /// A variant's maps as its filter samples them.
 fn read_as(timed: &Timed, index: usize, choice: &Choice) -> DepthMaps {
-    let sampling = choice.settings.sampling;
+    let sampling = choice.settings.sampling_taken();
     DepthMaps { sampling, ..timed.maps[timed.sets[index]].clone() }
 }
 

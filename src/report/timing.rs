@@ -127,7 +127,7 @@ pub fn by_adapter(
     let lookup =
         lookups(device, job, subject, choices, receivers, &tests, |index| &made[sets[index]].0)?;
     (job.step)("reading the maps");
-    let sampling = Settings::default().sampling;
+    let sampling = Settings::default().sampling_taken();
     let maps = made.iter().map(|(maps, _)| maps.download(device, sampling));
     let maps = maps.collect::<Result<_, _>>()?;
     Ok(Timed { sets, generation, maps, lookup, empty_pass })
@@ -213,8 +213,10 @@ pub fn by_ports(
         let receivers = receivers(&frame);
         let stride = receivers.len().div_ceil(PORT_PIXELS).max(1);
         let some: Vec<Receiver> = receivers.into_iter().step_by(stride).collect();
-        let maps: DepthMaps =
-            DepthMaps { sampling: choice.settings.sampling, ..DepthMaps::clone(&maps[set]) };
+        let maps: DepthMaps = DepthMaps {
+            sampling: choice.settings.sampling_taken(),
+            ..DepthMaps::clone(&maps[set])
+        };
         let run = |_| {
             let start = Instant::now();
             let sum: f32 =

@@ -185,6 +185,8 @@ pub fn described(choice: &Choice, frame: &Frame) -> Result<Variant, FrameError> 
         passes: maps,
         filter: filter_name(&choice.settings),
         bias: match choice.settings.bias_taken() {
+            Bias::Plane => "plane",
+            Bias::Normal => "normal",
             Bias::Constant(_) => "constant",
             Bias::Footprint => "footprint",
             Bias::TexelCentre => "texel-centre",

@@ -1,7 +1,7 @@
 //! Port of `wgsl/bias.wesl`.
 
 use super::depth::dpsm_depth;
-use super::edge::{dpsm_edge_terms, dpsm_edge_unit};
+use super::edge::dpsm_edge_terms;
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::dpsm_flip;
 use super::light::{DpsmLight, dpsm_light_coordinates};
@@ -36,16 +36,19 @@ pub const DPSM_BIAS_DEPTH: f64 = 1.0 / (1u64 << 22) as f64;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 pub const DPSM_BIAS_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 24) as f64;
 
-/// The receiver at a light-space point with a geometric normal of any length, of either side.
+/// The square of the shortest normal that is one: 2^-120.
+pub const DPSM_BIAS_NORMAL: f64 = 1.0 / (1u128 << 120) as f64;
+
+/// The receiver at a light-space point with a normal of any length, of either side.
 pub fn dpsm_receiver<T: Float>(p: Vec3<T>, normal: Vec3<T>) -> DpsmReceiver<T> {
     let distance = p.length();
-    let given = dpsm_edge_unit(normal);
-    if given.dot(given) < T::lit(0.5) {
-        let facing = p / distance.max(T::lit(DPSM_SMALLEST));
-        return DpsmReceiver { plane: facing.extend(distance), distance };
-    }
-    let height = given.dot(p);
-    let turned = select(given, -given, height < T::lit(0.0));
+    let square = normal.dot(normal);
+    let known = square >= T::lit(DPSM_BIAS_NORMAL);
+    let along = select(p, normal, known);
+    let size = select(distance.max(T::lit(DPSM_SMALLEST)), square.sqrt(), known);
+    let unit = along * (T::lit(1.0) / size);
+    let height = select(distance, unit.dot(p), known);
+    let turned = select(unit, -unit, height < T::lit(0.0));
     DpsmReceiver { plane: turned.extend(height.abs()), distance }
 }
 

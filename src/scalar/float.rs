@@ -246,6 +246,16 @@ impl<T: Float> Vec4<T> {
     pub fn zw(self) -> Vec2<T> {
         Vec2::new(self.z, self.w)
     }
+
+    /// The components in their order.
+    pub fn to_array(self) -> [T; 4] {
+        [self.x, self.y, self.z, self.w]
+    }
+
+    /// The vector of four components in their order.
+    pub fn from_array([x, y, z, w]: [T; 4]) -> Self {
+        Self::new(x, y, z, w)
+    }
 }
 
 /// WGSL's select: `yes` where the condition holds.

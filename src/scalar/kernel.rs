@@ -104,13 +104,27 @@ pub fn dpsm_kernel_turn<T: Float>(direction: Vec2<T>) -> Vec2<T> {
     Vec2::new(c * direction.x - s * direction.y, s * direction.x + c * direction.y)
 }
 
-/// A direction for the spiral's first tap that looks random from pixel to pixel.
+/// Cosine and sine of the golden section of a right angle.
+pub const DPSM_KERNEL_QUARTER: [f64; 2] = [0.5646348864175503, 0.8253408053890465];
+
+/// Taps in rings of four, a right angle apart: how many rings.
+pub fn dpsm_kernel_rings(count: u32) -> u32 {
+    (count.wrapping_add(3) / 4).max(1)
+}
+
+/// The direction of the first tap of the next ring.
+pub fn dpsm_kernel_next<T: Float>(direction: Vec2<T>) -> Vec2<T> {
+    let [c, s] = DPSM_KERNEL_QUARTER.map(T::lit);
+    Vec2::new(c * direction.x - s * direction.y, s * direction.x + c * direction.y)
+}
+
+/// A direction for a kernel's first tap that differs from pixel to pixel so that neighbours make
+/// up for each other.
 pub fn dpsm_kernel_rotation<T: Float>(pixel: [u32; 2]) -> Vec2<T> {
-    // an integer hash: odd factors, high bits folded onto low ones
-    let mut bits = pixel[0].wrapping_mul(0x9e37_79b1) ^ pixel[1].wrapping_mul(0x85eb_ca77);
-    bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
-    bits = (bits ^ (bits >> 12)).wrapping_mul(0x297a_2d39);
-    bits ^= bits >> 15;
+    // shares of a turn in 2^-32: 0.06711056 x + 0.00583715 y, and 52.9829189 times it
+    let [x, y] = pixel;
+    let along = x.wrapping_mul(288_237_660).wrapping_add(y.wrapping_mul(25_070_368));
+    let bits = along.wrapping_mul(52).wrapping_add((along >> 16).wrapping_mul(64_417));
     let share = f64::from(bits >> 8) / f64::from(1 << 23) - 1.0;
     let start = Vec2::new(T::lit(1.0), T::lit(DPSM_KERNEL_SIXTEENTH) * T::lit(share));
     let mut turned = start / start.length();

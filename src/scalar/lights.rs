@@ -1,12 +1,13 @@
 //! Port of `wgsl/lights.wesl`.
 
 use super::bias::dpsm_receiver;
-use super::filter::{DpsmTaps, dpsm_filter_disk, dpsm_filter_hardware};
+use super::filter::{DpsmTaps, dpsm_filter_disk};
 use super::float::{Float, Vec2, Vec3, Vec4};
 use super::hemisphere::dpsm_to_light;
-use super::kernel::{dpsm_kernel, dpsm_kernel_tangent};
+use super::kernel::dpsm_kernel_tangent;
 use super::light::DpsmLight;
 use super::maps::Maps;
+use super::plane::dpsm_visibility_plane;
 
 /// A world-space direction in light space.
 pub fn dpsm_lights_turn<T: Float>(direction: Vec3<T>, light: DpsmLight<T>) -> Vec3<T> {
@@ -27,10 +28,10 @@ pub fn dpsm_lights_visibility<T: Float>(
     let p = dpsm_to_light(world, light);
     let receiver = dpsm_receiver(p, dpsm_lights_turn(normal, light));
     if radius <= T::lit(0.0) {
-        return dpsm_filter_hardware(maps, p, receiver, light, taps);
+        return dpsm_visibility_plane(maps, p, receiver, light, taps.quantum, taps.tolerance);
     }
-    let kernel = dpsm_kernel(p, dpsm_kernel_tangent(p, radius));
-    dpsm_filter_disk(maps, receiver, kernel, light, taps, rotation)
+    let tangent = dpsm_kernel_tangent(p, radius);
+    dpsm_filter_disk(maps, p, receiver, tangent, light, taps, rotation)
 }
 
 /// The shares of up to four lights; 0 for those from count on.

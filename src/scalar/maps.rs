@@ -1,12 +1,27 @@
 //! What stands for a depth texture and its comparison sampler in the ports.
 
-use super::float::{Float, Vec2};
+use super::float::{Float, Vec2, Vec4};
 
 /// A texture with a comparison sampler, as the ports of sampling functions see it.
-pub trait Maps<T> {
+pub trait Maps<T: Float> {
     /// textureSampleCompareLevel: the share of the sampled texels whose stored depth is not less
     /// than `reference`, at texture coordinates `st` of the layer.
     fn compare(&self, st: Vec2<T>, layer: u32, reference: T) -> T;
+
+    /// textureSampleLevel without a comparison: the depth stored in the texel that holds texture
+    /// coordinates `st` of the layer.
+    fn sample(&self, st: Vec2<T>, layer: u32) -> T {
+        self.load((st * self.size()).floor(), layer)
+    }
+
+    /// textureGather at the corner of four texels: lower left, lower right, upper right, upper left.
+    fn gather(&self, st: Vec2<T>, layer: u32) -> Vec4<T> {
+        let first = (st * self.size() - Vec2::splat(T::lit(0.5))).floor();
+        let at = |right: f64, down: f64| {
+            self.load(first + Vec2::new(T::lit(right), T::lit(down)), layer)
+        };
+        Vec4::new(at(0.0, 1.0), at(1.0, 1.0), at(1.0, 0.0), at(0.0, 0.0))
+    }
 
     /// textureDimensions: texels along each side.
     fn size(&self) -> Vec2<T>;

@@ -26,6 +26,7 @@ pub mod lights;
 pub mod maps;
 pub mod paraboloid;
 pub mod pcss;
+pub mod plane;
 pub mod ports;
 pub mod raw;
 pub mod shade;

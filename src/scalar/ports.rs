@@ -15,6 +15,7 @@ use super::light::*;
 use super::lights::*;
 use super::paraboloid::*;
 use super::pcss::*;
+use super::plane::*;
 use super::shade::*;
 use super::tessellate::*;
 use super::triangle::*;
@@ -90,6 +91,17 @@ impl<T, V: Flat<T>> Flat<T> for [V; 3] {
     }
 }
 
+impl<T, V: Flat<T>> Flat<T> for [V; 4] {
+    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
+        Some([V::read(words)?, V::read(words)?, V::read(words)?, V::read(words)?])
+    }
+    fn write(self, words: &mut Vec<Word<T>>) {
+        for part in self {
+            part.write(words);
+        }
+    }
+}
+
 impl<T> Flat<T> for bool {
     fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
         u32::read(words).map(|value| value != 0)
@@ -132,7 +144,13 @@ flat! {
     DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
     DpsmTap { uv, hemisphere }
     DpsmTaps { count, kind, quantum, tolerance }
-    DpsmBlockers { tangents, count, unmapped }
+    DpsmBlockers { farthest, all }
+    DpsmPlane { uv, lean, facing, cosine, pitch, height, distance, near, hemisphere }
+    DpsmDisk {
+        place, right, hemisphere, facing, lean, rest, height, distance, near, steep, least
+    }
+    DpsmFour { s, t, crossed }
+    DpsmContact { sum, farthest }
 }
 
 impl<T> Flat<T> for DpsmClass {
@@ -266,6 +284,7 @@ ports! {
         dpsm_lookup_texel_centre, dpsm_lookup_texel_centre_or_own, dpsm_lookup_along_centre,
         dpsm_lookup_biased,
     }
+    plane { dpsm_plane, dpsm_plane_four, dpsm_plane_share, dpsm_plane_depths }
     cube {
         dpsm_cube_face, dpsm_cube_view, dpsm_cube_unview, dpsm_cube_guard, dpsm_cube_vertex,
         dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_slack,
@@ -276,10 +295,15 @@ ports! {
     kernel {
         dpsm_kernel_tangent, dpsm_kernel, dpsm_kernel_disk, dpsm_kernel_tap,
         dpsm_kernel_mirrored, dpsm_kernel_projected, dpsm_kernel_ring, dpsm_kernel_turn,
-        dpsm_kernel_rotation, dpsm_kernel_guard,
+        dpsm_kernel_rings integers, dpsm_kernel_next, dpsm_kernel_rotation, dpsm_kernel_guard,
     }
-    filter { dpsm_filter_reader, dpsm_filter_lookup }
-    pcss { dpsm_pcss_tangent, dpsm_pcss_found, dpsm_pcss_width }
+    filter {
+        dpsm_filter_reader, dpsm_filter_lookup, dpsm_filter_cone, dpsm_filter_map,
+        dpsm_filter_places, dpsm_filter_step, dpsm_filter_layers, dpsm_filter_lit,
+        dpsm_filter_within, dpsm_filter_share, dpsm_filter_even, dpsm_filter_dense,
+        dpsm_filter_contact,
+    }
+    pcss { dpsm_pcss_tangent, dpsm_pcss_ring, dpsm_pcss_found, dpsm_pcss_width }
     lights { dpsm_lights_turn }
     shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight, dpsm_shadow_terminator }
 }

@@ -1,17 +1,25 @@
 //! Port of `wgsl/raw.wesl`.
 
 use super::bias::DpsmReceiver;
-use super::filter::{DPSM_TAP_HARD, DpsmReader, DpsmTaps, dpsm_filter_lookup, dpsm_filter_reader};
-use super::float::{Float, Vec2, Vec3, select};
-use super::hemisphere::dpsm_hemisphere;
-use super::kernel::{
-    DpsmKernel, DpsmTap, dpsm_kernel, dpsm_kernel_mirrored, dpsm_kernel_projected,
-    dpsm_kernel_ring, dpsm_kernel_tap, dpsm_kernel_turn,
+use super::filter::{
+    DPSM_FILTER_SHIFT, DPSM_FILTER_SMALLEST, DPSM_FILTER_UNMAPPED, DPSM_FILTER_WIDEST,
+    DPSM_TAP_HARD, DpsmContact, DpsmDisk, DpsmFour, DpsmReader, DpsmTaps, dpsm_filter_cone,
+    dpsm_filter_contact, dpsm_filter_dense, dpsm_filter_even, dpsm_filter_layers,
+    dpsm_filter_lookup, dpsm_filter_map, dpsm_filter_places, dpsm_filter_reader, dpsm_filter_share,
 };
-use super::light::{DPSM_ATLAS, DpsmLight};
+use super::float::{Float, Vec2, Vec3, Vec4, select};
+use super::hemisphere::{DPSM_BACK, dpsm_hemisphere};
+use super::kernel::{
+    DpsmKernel, DpsmTap, dpsm_kernel_mirrored, dpsm_kernel_next, dpsm_kernel_projected,
+    dpsm_kernel_ring, dpsm_kernel_rings, dpsm_kernel_turn,
+};
+use super::light::{DPSM_ATLAS, DpsmLight, dpsm_light_coordinates, dpsm_light_layer};
 use super::maps::Maps;
-use super::paraboloid::{dpsm_project_own, dpsm_texel_pitch};
-use super::pcss::{DpsmBlockers, dpsm_pcss_found, dpsm_pcss_tangent, dpsm_pcss_width};
+use super::paraboloid::{DPSM_SMALLEST, dpsm_project_own};
+use super::pcss::{
+    DpsmBlockers, dpsm_pcss_found, dpsm_pcss_ring, dpsm_pcss_tangent, dpsm_pcss_width,
+};
+use super::plane::{DPSM_PLANE_SHIFT, dpsm_plane, dpsm_plane_four, dpsm_plane_share};
 use super::visibility::{DpsmLookup, dpsm_lookup};
 
 /// The depth stored in a texel, coordinates clamped to the texture.
@@ -87,25 +95,107 @@ pub fn dpsm_raw_pcf<T: Float>(
     select(T::lit(0.0), sum / T::lit((side * side).into()), own.mapped)
 }
 
+/// dpsm_visibility_plane by loads.
+pub fn dpsm_raw_plane<T: Float>(
+    maps: &impl Maps<T>,
+    p: Vec3<T>,
+    receiver: DpsmReceiver<T>,
+    light: DpsmLight<T>,
+    quantum: T,
+    tolerance: T,
+) -> T {
+    let at = dpsm_plane(p, receiver, T::lit(DPSM_PLANE_SHIFT), light, quantum, tolerance);
+    let four = dpsm_plane_four(at, light);
+    let corner = (four.xy() + Vec2::splat(T::lit(1.0))) / light.size;
+    let st = dpsm_light_coordinates(light, at.hemisphere, corner);
+    let first = (st * maps.size() - Vec2::splat(T::lit(0.5))).floor();
+    let layer = dpsm_light_layer(light, at.hemisphere);
+    let load = |right: f64, down: f64| {
+        dpsm_raw_load(maps, first + Vec2::new(T::lit(right), T::lit(down)), layer)
+    };
+    let stored = Vec4::new(load(0.0, 1.0), load(1.0, 1.0), load(1.0, 0.0), load(0.0, 0.0));
+    select(T::lit(0.0), dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres)
+}
+
+/// dpsm_filter_read by loads.
+pub fn dpsm_raw_read<T: Float>(
+    maps: &impl Maps<T>,
+    at: DpsmFour<T>,
+    layers: [u32; 2],
+    mapped: [bool; 2],
+) -> Vec4<T> {
+    let (s, t, size) = (at.s.to_array(), at.t.to_array(), maps.size());
+    let read = |i: usize| {
+        let map = usize::from(at.crossed[i]);
+        let stored = dpsm_raw_load(maps, (Vec2::new(s[i], t[i]) * size).floor(), layers[map]);
+        select(T::lit(DPSM_FILTER_UNMAPPED), stored, mapped[map])
+    };
+    Vec4::from_array(std::array::from_fn(read))
+}
+
+/// dpsm_filter_sum by loads.
+pub fn dpsm_raw_sum<T: Float>(
+    maps: &impl Maps<T>,
+    disk: DpsmDisk<T>,
+    light: DpsmLight<T>,
+    rings: u32,
+) -> T {
+    let other = DPSM_BACK.wrapping_sub(disk.hemisphere);
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = [disk.hemisphere < light.hemispheres, other < light.hemispheres];
+    let per = T::lit(1.0) / T::lit(rings.into());
+    let mut share = T::lit(0.5) * per;
+    let mut direction = Vec2::new(T::lit(1.0), T::lit(0.0));
+    let mut sum = Vec4::splat(T::lit(0.0));
+    for _ in 0..rings {
+        let ring = share.sqrt();
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        sum = sum + dpsm_filter_even(disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share = share + per;
+    }
+    dpsm_filter_share(sum)
+}
+
 /// dpsm_filter_disk by loads.
 pub fn dpsm_raw_disk<T: Float>(
     maps: &impl Maps<T>,
+    p: Vec3<T>,
     receiver: DpsmReceiver<T>,
-    kernel: DpsmKernel<T>,
+    tangent: T,
     light: DpsmLight<T>,
     taps: DpsmTaps<T>,
     rotation: Vec2<T>,
 ) -> T {
-    let reader = dpsm_filter_reader(receiver, light, taps);
-    let mut sum = T::lit(0.0);
-    let mut direction = rotation;
-    for index in 0..taps.count {
-        let offset = direction * dpsm_kernel_ring::<T>(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        sum = sum + dpsm_raw_tap(maps, reader, tap, light);
-        direction = dpsm_kernel_turn(direction);
+    let shift = T::lit(DPSM_FILTER_SHIFT);
+    let at = dpsm_plane(p, receiver, shift, light, taps.quantum, taps.tolerance);
+    let least = T::lit(DPSM_FILTER_SMALLEST) * at.pitch;
+    let wide = tangent.max(least).min(T::lit(DPSM_FILTER_WIDEST));
+    let disk = dpsm_filter_cone(at, wide, wide, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let other = DPSM_BACK.wrapping_sub(disk.hemisphere);
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = [disk.hemisphere < light.hemispheres, other < light.hemispheres];
+    let per = T::lit(1.0) / T::lit(rings.into());
+    let mut share = T::lit(0.5) * per;
+    let mut direction = Vec2::new(T::lit(1.0), T::lit(0.0));
+    let mut found = DpsmContact { sum: Vec4::splat(T::lit(0.0)), farthest: T::lit(0.0) };
+    for _ in 0..rings {
+        let ring = dpsm_filter_dense(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        found = dpsm_filter_contact(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share = share + per;
     }
-    sum / T::lit(taps.count.into())
+    dpsm_filter_share(found.sum)
 }
 
 /// dpsm_filter_mirror by loads.
@@ -154,24 +244,28 @@ pub fn dpsm_raw_reproject<T: Float>(
 /// dpsm_pcss_search by loads.
 pub fn dpsm_raw_pcss_search<T: Float>(
     maps: &impl Maps<T>,
-    receiver: DpsmReceiver<T>,
-    kernel: DpsmKernel<T>,
+    disk: DpsmDisk<T>,
     light: DpsmLight<T>,
-    taps: DpsmTaps<T>,
-    radius: T,
-    rotation: Vec2<T>,
+    rings: u32,
 ) -> DpsmBlockers<T> {
-    let hard = DpsmTaps { kind: DPSM_TAP_HARD, ..taps };
-    let reader = dpsm_filter_reader(receiver, light, hard);
-    let mut found = DpsmBlockers { tangents: T::lit(0.0), count: 0, unmapped: 0 };
-    let mut direction = rotation;
-    for index in 0..taps.count {
-        let offset = direction * dpsm_kernel_ring::<T>(index, taps.count);
-        let tap = dpsm_kernel_tap(kernel, offset);
-        let at = dpsm_filter_lookup(reader, tap, light);
-        let stored = dpsm_raw_load(maps, (at.coordinates * maps.size()).floor(), at.layer);
-        found = dpsm_pcss_found(found, stored, at, receiver, light, radius);
-        direction = dpsm_kernel_turn(direction);
+    let other = DPSM_BACK.wrapping_sub(disk.hemisphere);
+    let own = dpsm_filter_map(light, disk.hemisphere);
+    let beyond = dpsm_filter_map(light, other).x;
+    let layers = dpsm_filter_layers(light, disk.hemisphere);
+    let mapped = [disk.hemisphere < light.hemispheres, other < light.hemispheres];
+    let per = T::lit(1.0) / T::lit(rings.into());
+    let mut share = T::lit(0.5) * per;
+    let mut direction = Vec2::new(T::lit(1.0), T::lit(0.0));
+    let none = Vec4::splat(T::lit(DPSM_FILTER_UNMAPPED));
+    let mut found = DpsmBlockers { farthest: none, all: [true; 4] };
+    for _ in 0..rings {
+        let ring = dpsm_pcss_ring(share);
+        let offset = direction * ring;
+        let four = dpsm_filter_places(disk, own, beyond, offset);
+        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        found = dpsm_pcss_found(found, disk, offset, ring, stored);
+        direction = dpsm_kernel_next(direction);
+        share = share + per;
     }
     found
 }
@@ -188,13 +282,19 @@ pub fn dpsm_raw_pcss<T: Float>(
     nearest: T,
     rotation: Vec2<T>,
 ) -> T {
-    let pitch = dpsm_texel_pitch(dpsm_project_own(p), light.size, light.guard);
-    let widest = dpsm_pcss_tangent(receiver.distance, nearest, radius);
-    let search = dpsm_kernel(p, widest.max(pitch));
-    let found = dpsm_raw_pcss_search(maps, receiver, search, light, taps, radius, rotation);
-    if found.count == 0 && found.unmapped == 0 {
+    let shift = T::lit(DPSM_FILTER_SHIFT);
+    let at = dpsm_plane(p, receiver, shift, light, taps.quantum, taps.tolerance);
+    let distance = receiver.distance;
+    let seen = radius / distance.max(T::lit(DPSM_SMALLEST));
+    let smallest = (T::lit(DPSM_FILTER_SMALLEST) * at.pitch).min(T::lit(DPSM_FILTER_WIDEST));
+    let widest = dpsm_pcss_tangent(distance, nearest, radius).max(smallest);
+    let search = dpsm_filter_cone(at, widest, seen, rotation);
+    let rings = dpsm_kernel_rings(taps.count);
+    let found = dpsm_raw_pcss_search(maps, search, light, rings);
+    if found.all.iter().all(|lit| *lit) {
         return T::lit(1.0);
     }
-    let kernel = dpsm_kernel(p, dpsm_pcss_width(found, pitch));
-    dpsm_raw_disk(maps, receiver, kernel, light, taps, rotation)
+    let width = dpsm_pcss_width(found, distance, at.pitch, radius, light);
+    let disk = dpsm_filter_cone(at, width, seen, rotation);
+    dpsm_raw_sum(maps, disk, light, rings)
 }

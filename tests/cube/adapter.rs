@@ -1,6 +1,6 @@
 //! The shadow test on the adapter, beside its port and beside the hardware's own cube maps.
 
-use dpsm::gpu::{Evaluator, Resources, Texels, comparison_sampler};
+use dpsm::gpu::{Evaluator, Resources, Texels, comparison_sampler, point_sampler};
 use dpsm::render::Format;
 use dpsm::scalar::cube::*;
 use dpsm::scalar::float::Vec3;
@@ -19,6 +19,7 @@ fn adapter_agrees_with_the_port_and_a_texture_cube_samples_alike() {
     maps.depths.fill_with(|| rng.f32());
     let texture = Texels::new(&device).unwrap().upload(&device, &maps, Format::D32).unwrap();
     let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let point = point_sampler(&device).unwrap();
     let view = |dimension| {
         texture.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(dimension),
@@ -34,7 +35,7 @@ fn adapter_agrees_with_the_port_and_a_texture_cube_samples_alike() {
             Word::Integer(value) => value,
         };
         let words: Vec<u32> = words.iter().map(bits).collect();
-        let resources = Resources { texture: view, sampler: &sampler };
+        let resources = Resources { texture: view, sampler: &sampler, point: &point };
         evaluator.run(&words, Some(resources)).unwrap().words
     };
     let mut words = Vec::new();

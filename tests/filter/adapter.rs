@@ -1,6 +1,6 @@
 //! The filters on the adapter beside their ports.
 
-use dpsm::gpu::{Device, Evaluator, Resources, Texels, comparison_sampler};
+use dpsm::gpu::{Device, Evaluator, Resources, Texels, comparison_sampler, point_sampler};
 use dpsm::render::Format;
 use dpsm::scalar::bias::{DpsmReceiver, dpsm_receiver};
 use dpsm::scalar::filter::*;
@@ -10,6 +10,7 @@ use dpsm::scalar::light::DpsmLight;
 use dpsm::scalar::lights::{dpsm_lights_four, dpsm_lights_visibility};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scalar::pcss::dpsm_pcss;
+use dpsm::scalar::plane::{dpsm_visibility_normal, dpsm_visibility_plane};
 use dpsm::scalar::ports::{Flat, Word};
 use dpsm::scalar::raw::*;
 
@@ -79,7 +80,8 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             ..Default::default()
         });
         let sampler = comparison_sampler(&device, sampling).unwrap();
-        let resources = Resources { texture: &view, sampler: &sampler };
+        let point = point_sampler(&device).unwrap();
+        let resources = Resources { texture: &view, sampler: &sampler, point: &point };
         let taps = DpsmTaps { kind, ..narrow_taps(hard(COUNT)) };
         let given: Vec<(Vec3<f32>, DpsmReceiver<f32>, f32)> = (0..RECORDS)
             .map(|_| {
@@ -101,11 +103,6 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             let (p, receiver, tangent) = given[i];
             (receiver, dpsm_kernel(p, tangent), light, taps, first).write(to);
         });
-        check(compare(&device, "dpsm_filter_disk", resources, of_kernel.clone(), |i| {
-            let (p, receiver, tangent) = given[i];
-            let kernel = dpsm_kernel(p, tangent);
-            vec![dpsm_filter_disk(&maps, receiver, kernel, light, taps, first)]
-        }));
         check(compare(&device, "dpsm_filter_mirror", resources, of_kernel, |i| {
             let (p, receiver, tangent) = given[i];
             let kernel = dpsm_kernel(p, tangent);
@@ -116,6 +113,35 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             (p, tangent, receiver).write(to);
             (light, taps, first).write(to);
         });
+        let of_disk = records(&|i, to| {
+            let (p, receiver, tangent) = given[i];
+            (p, receiver, tangent).write(to);
+            (light, taps, first).write(to);
+        });
+        // these read the nearest texels whatever the sampler
+        let nearest = |(mean, most): (f32, f32)| match exact {
+            true => assert_eq!(most, 0.0),
+            false => assert!(mean <= 1e-4, "{mean}"),
+        };
+        nearest(compare(&device, "dpsm_filter_disk", resources, of_disk, |i| {
+            let (p, receiver, tangent) = given[i];
+            vec![dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first)]
+        }));
+        let of_plane = records(&|i, to| {
+            (given[i].0, given[i].1, light).write(to);
+            (taps.quantum, taps.tolerance).write(to);
+        });
+        let [quantum, tolerance] = [taps.quantum, taps.tolerance];
+        nearest(compare(&device, "dpsm_visibility_plane", resources, of_plane.clone(), |i| {
+            let (p, receiver, _) = given[i];
+            vec![dpsm_visibility_plane(&maps, p, receiver, light, quantum, tolerance)]
+        }));
+        if kind == DPSM_TAP_LINEAR {
+            check(compare(&device, "dpsm_visibility_normal", resources, of_plane, |i| {
+                let (p, receiver, _) = given[i];
+                vec![dpsm_visibility_normal(&maps, p, receiver, light, quantum, tolerance)]
+            }));
+        }
         check(compare(&device, "dpsm_filter_reproject", resources, of_point, |i| {
             let (p, receiver, tangent) = given[i];
             vec![dpsm_filter_reproject(&maps, p, tangent, receiver, light, taps, first)]
@@ -128,7 +154,7 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             (given[i].0, given[i].1, light, taps).write(to);
             (0.2_f32, 0.5_f32, first).write(to);
         });
-        check(compare(&device, "dpsm_pcss", resources, of_soft, |i| {
+        nearest(compare(&device, "dpsm_pcss", resources, of_soft, |i| {
             let (p, receiver, _) = given[i];
             vec![dpsm_pcss(&maps, p, receiver, light, taps, 0.2, 0.5, first)]
         }));
@@ -136,7 +162,7 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             (light.position + given[i].0, given[i].1.plane.xyz(), light, taps).write(to);
             (given[i].2, first).write(to);
         });
-        check(compare(&device, "dpsm_lights_visibility", resources, of_light, |i| {
+        nearest(compare(&device, "dpsm_lights_visibility", resources, of_light, |i| {
             let (p, receiver, radius) = given[i];
             let world = light.position + p;
             let normal = receiver.plane.xyz();
@@ -180,7 +206,8 @@ fn loads_agree_with_their_ports_on_the_adapter() {
     );
     let view = texture.create_view(&Default::default());
     let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
-    let resources = Resources { texture: &view, sampler: &sampler };
+    let point = point_sampler(&device).unwrap();
+    let resources = Resources { texture: &view, sampler: &sampler, point: &point };
     let exact = device.info.name.contains("llvmpipe");
     for (kind, _) in KINDS {
         let taps = DpsmTaps { kind, ..narrow_taps(hard(COUNT)) };
@@ -192,11 +219,25 @@ fn loads_agree_with_their_ports_on_the_adapter() {
             .collect();
         let first: Vec2<f32> = first();
         let disks = given.iter().map(|&(p, receiver)| {
-            words(|to| (receiver, dpsm_kernel(p, 0.1), light, taps, first).write(to))
+            words(|to| {
+                (p, receiver, 0.1_f32).write(to);
+                (light, taps, first).write(to);
+            })
         });
         let off = compare(&device, "dpsm_raw_disk", resources, disks.collect(), |i| {
             let (p, receiver) = given[i];
-            vec![dpsm_raw_disk(&maps, receiver, dpsm_kernel(p, 0.1), light, taps, first)]
+            vec![dpsm_raw_disk(&maps, p, receiver, 0.1, light, taps, first)]
+        });
+        assert!(if exact { off.1 <= 1e-6 } else { off.0 <= 1e-4 }, "{off:?}");
+        let planes = given.iter().map(|&(p, receiver)| {
+            words(|to| {
+                (p, receiver, light).write(to);
+                (taps.quantum, taps.tolerance).write(to);
+            })
+        });
+        let off = compare(&device, "dpsm_raw_plane", resources, planes.collect(), |i| {
+            let (p, receiver) = given[i];
+            vec![dpsm_raw_plane(&maps, p, receiver, light, taps.quantum, taps.tolerance)]
         });
         assert!(if exact { off.1 <= 1e-6 } else { off.0 <= 1e-4 }, "{off:?}");
         let soft = given.iter().map(|&(p, receiver)| {
@@ -226,7 +267,8 @@ fn four_lights_by_value_agree_with_their_port() {
         ..Default::default()
     });
     let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
-    let resources = Resources { texture: &view, sampler: &sampler };
+    let point = point_sampler(&device).unwrap();
+    let resources = Resources { texture: &view, sampler: &sampler, point: &point };
     let of = |i: u32| DpsmLight { first_layer: 2 * i, ..narrow(light(32)) };
     let lights: [DpsmLight<f32>; 4] = std::array::from_fn(|i| of(i as u32));
     let taps = narrow_taps(hard(8));

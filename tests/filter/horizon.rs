@@ -5,7 +5,7 @@ use dpsm::scalar::depth::dpsm_depth;
 use dpsm::scalar::filter::*;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::hemisphere::dpsm_hemisphere;
-use dpsm::scalar::kernel::{DpsmTap, dpsm_kernel};
+use dpsm::scalar::kernel::DpsmTap;
 
 use crate::KINDS;
 use dpsm::scalar::maps::Sampling;
@@ -27,9 +27,8 @@ fn grazing_receivers_behind_a_wall_all_around_are_in_shadow() {
         let across = p.cross(unit(&mut rng));
         let normal = across / across.length() + p * (0.01 / 5.0);
         let receiver = dpsm_receiver(p, normal);
-        let kernel = dpsm_kernel(p, 0.087);
         let taps = narrow_taps(hard(16));
-        let lit = dpsm_filter_disk(&maps, receiver, kernel, light, taps, first());
+        let lit = dpsm_filter_disk(&maps, p, receiver, 0.087, light, taps, first());
         assert_eq!(lit, 0.0, "{p:?}, {normal:?}");
     }
 }

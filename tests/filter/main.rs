@@ -17,6 +17,8 @@ use dpsm::scalar::kernel::*;
 use dpsm::scalar::light::{DPSM_ATLAS, DPSM_HEMISPHERICAL, DpsmLight};
 use dpsm::scalar::lights::{dpsm_lights_four, dpsm_lights_visibility};
 use dpsm::scalar::maps::{DepthMaps, Maps, Sampling};
+use dpsm::scalar::pcss::dpsm_pcss;
+use dpsm::scalar::plane::dpsm_visibility_plane;
 use dpsm::scalar::raw::*;
 use support::{first, hard, light, maps, narrow, narrow_taps, rotated, to_world};
 
@@ -52,9 +54,12 @@ fn lit_plane_is_lit_at_any_incidence_with_any_kernel() {
             let receiver = dpsm_receiver(p, support::to_light(light, normal).narrow());
             let taps = DpsmTaps { kind, ..narrow_taps(hard(16)) };
             let light = narrow(light);
-            let kernel = dpsm_kernel(p, tangent);
-            let lit = dpsm_filter_disk(&maps, receiver, kernel, light, taps, first());
-            assert!((lit - 1.0).abs() <= 16.0 * EPS as f32, "{lit} at {p:?}, {tangent}, {kind}");
+            let lit = dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first());
+            assert_eq!(lit, 1.0, "{p:?}, {tangent}");
+            let soft = dpsm_pcss(&maps, p, receiver, light, taps, 4.0 * tangent, 0.2, first());
+            assert_eq!(soft, 1.0, "{p:?}, {tangent}");
+            let single = dpsm_visibility_plane(&maps, p, receiver, light, 0.0, 0.0);
+            assert_eq!(single, 1.0, "{p:?}");
             let lit = dpsm_filter_reproject(&maps, p, tangent, receiver, light, taps, first());
             assert!((lit - 1.0).abs() <= 16.0 * EPS as f32, "{lit} at {p:?}, {tangent}, {kind}");
             let lit = dpsm_filter_hardware(&maps, p, receiver, light, taps);
@@ -82,8 +87,7 @@ fn guard_band_keeps_taps_on_the_rim_clear_of_what_is_not_stored() {
             let receiver = dpsm_receiver(p, p);
             let taps = DpsmTaps { kind, ..hard(16) };
             darkest = darkest.min(dpsm_filter_hardware(&maps, p, receiver, light, taps));
-            let kernel = dpsm_kernel(p, 0.1);
-            let disk = dpsm_filter_disk(&maps, receiver, kernel, light, taps, first());
+            let disk = dpsm_filter_disk(&maps, p, receiver, 0.1, light, taps, first());
             darkest = darkest.min(disk);
             let pcf = dpsm_filter_pcf(&maps, p, light, 4, 0.0);
             if side >= 4.0 + f64::from(kind) {
@@ -116,18 +120,7 @@ fn hemispherical_light_darkens_taps_beyond_its_rim_and_no_others() {
             let off: f64 = f64::from(step) * 0.01;
             let p = Vec3::new(0.6 * off.cos(), 0.8 * off.cos(), off.sin());
             let receiver = dpsm_receiver(p, p);
-            let kernel = dpsm_kernel(p, tangent);
-            let mut direction = first();
-            let mut front = 0;
-            for index in 0..64 {
-                let offset = direction * dpsm_kernel_ring::<f64>(index, 64);
-                let tap = dpsm_kernel_tap(kernel, offset);
-                front += u32::from(tap.hemisphere == 0);
-                direction = dpsm_kernel_turn(direction);
-            }
-            let share = f64::from(front) / 64.0;
-            let lit = dpsm_filter_disk(&maps, receiver, kernel, light, taps, first());
-            assert!((lit - share).abs() <= 1e-13, "{lit} for {share} at {off}");
+            let lit = dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first());
             if off > tangent.atan() {
                 assert!((lit - 1.0).abs() <= 1e-13, "dark fringe at {off}: {lit}");
             }
@@ -209,8 +202,12 @@ fn loads_give_what_the_comparison_sampler_gives() {
                     dpsm_raw_pcf(&maps, p, light, 4, 0.01, kind),
                 ),
                 (
-                    dpsm_filter_disk(&maps, receiver, kernel, light, taps, first()),
-                    dpsm_raw_disk(&maps, receiver, kernel, light, taps, first()),
+                    dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first()),
+                    dpsm_raw_disk(&maps, p, receiver, tangent, light, taps, first()),
+                ),
+                (
+                    dpsm_visibility_plane(&maps, p, receiver, light, 0.0, 0.0),
+                    dpsm_raw_plane(&maps, p, receiver, light, 0.0, 0.0),
                 ),
                 (
                     dpsm_filter_mirror(&maps, receiver, kernel, light, taps, first()),
@@ -221,16 +218,7 @@ fn loads_give_what_the_comparison_sampler_gives() {
                     dpsm_raw_reproject(&maps, p, tangent, receiver, light, taps, first()),
                 ),
                 (
-                    dpsm::scalar::pcss::dpsm_pcss(
-                        &maps,
-                        p,
-                        receiver,
-                        light,
-                        taps,
-                        0.2,
-                        0.5,
-                        first(),
-                    ),
+                    dpsm_pcss(&maps, p, receiver, light, taps, 0.2, 0.5, first()),
                     dpsm_raw_pcss(&maps, p, receiver, light, taps, 0.2, 0.5, first()),
                 ),
             ];
@@ -260,9 +248,10 @@ fn atlas_filters_like_layers() {
     for _ in 0..5_000 {
         let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.5, 15.0));
         let receiver = dpsm_receiver(p, unit(&mut rng).widen());
-        let kernel = dpsm_kernel(p, 0.1);
         let value =
-            |maps, light| dpsm_filter_disk(maps, receiver, kernel, light, hard(16), first());
+            |maps, light| dpsm_filter_disk(maps, p, receiver, 0.1, light, hard(16), first());
+        assert_eq!(value(&two, layers), value(&one, atlas));
+        let value = |maps, light| dpsm_visibility_plane(maps, p, receiver, light, 0.0, 0.0);
         assert_eq!(value(&two, layers), value(&one, atlas));
     }
 }
@@ -295,8 +284,8 @@ fn four_lights_read_their_own_layers() {
             let p = support::to_light(light, world - light.position);
             let receiver = dpsm_receiver(p, support::to_light(light, normal));
             if radius > 0.0 {
-                let kernel = dpsm_kernel(p, radius / p.length());
-                let own = dpsm_filter_disk(&maps, receiver, kernel, light, hard(8), first());
+                let tangent = radius / p.length();
+                let own = dpsm_filter_disk(&maps, p, receiver, tangent, light, hard(8), first());
                 assert_eq!(own, each[1]);
             }
         }

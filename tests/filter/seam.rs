@@ -11,6 +11,7 @@ use dpsm::scalar::kernel::*;
 use dpsm::scalar::light::DpsmLight;
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scalar::paraboloid::{dpsm_project_own, dpsm_texel_pitch, dpsm_unproject};
+use dpsm::scalar::plane::dpsm_plane;
 
 use crate::common::{angle, rng, unit};
 use crate::support::{LID, Lid, first, hard, light, maps, rotated, to_world};
@@ -51,8 +52,9 @@ struct Given<'a> {
 type Filter = fn(&Given<'_>) -> f64;
 
 fn disk(g: &Given<'_>) -> f64 {
-    let kernel = dpsm_kernel(g.p, TANGENT);
-    dpsm_filter_disk(g.maps, g.receiver, kernel, g.light, hard(TAPS), first())
+    let at = dpsm_plane(g.p, g.receiver, DPSM_FILTER_SHIFT, g.light, 0.0, 0.0);
+    let disk = dpsm_filter_cone(at, TANGENT, TANGENT, first());
+    dpsm_filter_sum(g.maps, disk, g.light, dpsm_kernel_rings(TAPS))
 }
 
 fn mirror(g: &Given<'_>) -> f64 {

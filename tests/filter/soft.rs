@@ -1,7 +1,8 @@
 //! Soft shadows that harden towards contact.
 
 use dpsm::scalar::bias::dpsm_receiver;
-use dpsm::scalar::float::Vec3;
+use dpsm::scalar::filter::{DPSM_FILTER_SMALLEST, DPSM_FILTER_WIDEST};
+use dpsm::scalar::float::{Vec3, Vec4};
 use dpsm::scalar::kernel::{dpsm_kernel, dpsm_kernel_tangent};
 use dpsm::scalar::light::{DPSM_HEMISPHERICAL, DpsmLight};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
@@ -16,7 +17,7 @@ fn blocker_asks_for_the_lights_own_size() {
     assert_eq!(dpsm_pcss_tangent(2.0, 1.0, 0.25), 0.125);
     assert_eq!(dpsm_pcss_tangent(2.0, 2.0, 0.25), 0.0);
     assert_eq!(dpsm_pcss_tangent(2.0, 3.0, 0.25), 0.0);
-    assert_eq!(dpsm_pcss_tangent(2.0, 0.0, 0.25), DPSM_PCSS_WIDEST);
+    assert_eq!(dpsm_pcss_tangent(2.0, 0.0, 0.25), DPSM_FILTER_WIDEST);
     assert_eq!(dpsm_pcss_tangent(0.0, 0.0, 0.25), 0.0);
     let mut rng = rng("blocker");
     let mut worst = Worst::default();
@@ -76,13 +77,19 @@ fn penumbra_is_as_wide_as_the_lights_size_and_the_gap_ask_under_any_rotation() {
 }
 
 #[test]
-fn contact_hardens_the_shadow_to_a_texel() {
-    let found = DpsmBlockers { tangents: 1e-6, count: 2, unmapped: 0 };
-    assert_eq!(dpsm_pcss_width(found, 0.01), 0.01);
-    let found = DpsmBlockers { tangents: 0.5, count: 2, unmapped: 0 };
-    assert_eq!(dpsm_pcss_width(found, 0.01), 0.25);
-    let none = DpsmBlockers { tangents: 0.0, count: 0, unmapped: 3 };
-    assert_eq!(dpsm_pcss_width(none, 0.01), 0.01);
+fn farthest_blocker_sets_the_kernel_and_contact_hardens_it_to_half_a_texels_diagonal() {
+    let light = light(128);
+    let depth = |distance: f64| (distance - light.near) / (light.far - light.near);
+    let found = |farthest| DpsmBlockers { farthest, all: [false; 4] };
+    let width = |farthest| dpsm_pcss_width(found(farthest), 2.0, 0.01, 0.25, light);
+    // of blockers at 1/2, 1 and 1.5 the last: R (l - b) / (l b)
+    let each = Vec4::new(depth(0.5), depth(1.0), -1.0, depth(1.5));
+    let asked = 0.25 * 0.5 / 3.0;
+    assert!((width(each) - asked).abs() <= 1e-12, "{}", width(each));
+    let least = DPSM_FILTER_SMALLEST * 0.01;
+    assert_eq!(width(Vec4::splat(-1.0)), least);
+    assert_eq!(width(Vec4::splat(depth(1.9999))), least);
+    assert_eq!(width(Vec4::splat(0.0)), DPSM_FILTER_WIDEST);
 }
 
 #[test]

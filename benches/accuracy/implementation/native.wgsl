@@ -1029,21 +1029,25 @@ const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 
-/// The receiver at a light-space point with a geometric normal of any length, of either side. It
-/// must be the triangle's own: an interpolated one is of another plane. A zero normal gives the
-/// plane that faces the light.
+/// The square of the shortest normal that is one: 2^-120.
+const DPSM_BIAS_NORMAL: f32 = 0x1p-120;
+
+/// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
+/// or one shorter than 2^-60, gives the plane that faces the light.
 ///
-/// Domain: largest |component| of p in [2^-51, 2^62] or p = 0, of the normal 0 or in
-/// [2^-100, 2^126]. Bound: normal 11 eps absolute, each component; height 14 eps |p| absolute;
-/// distance 6 eps relative.
+/// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
+/// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
+/// p = 0, normal no longer than 2^62. Bound: normal 11 eps absolute, each component; height
+/// 14 eps |p| absolute; distance 6 eps relative.
 fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
     let distance = length(p);
-    let given = dpsm_edge_unit(normal);
-    if dot(given, given) < 0.5 {
-        return DpsmReceiver(vec4<f32>(p / max(distance, DPSM_SMALLEST), distance), distance);
-    }
-    let height = dot(given, p);
-    return DpsmReceiver(vec4<f32>(select(given, -given, vec3<bool>(height < 0.0)), abs(height)), distance);
+    let square = dot(normal, normal);
+    let known = square >= DPSM_BIAS_NORMAL;
+    let along = select(p, normal, vec3<bool>(known));
+    let size = select(max(distance, DPSM_SMALLEST), sqrt(square), known);
+    let unit = along * (1.0 / size);
+    let height = select(distance, dot(unit, p), known);
+    return DpsmReceiver(vec4<f32>(select(unit, -unit, vec3<bool>(height < 0.0)), abs(height)), distance);
 }
 
 /// The cosine of a receiver's incidence.
@@ -1222,6 +1226,138 @@ fn dpsm_lookup_biased(
     let depth = clamp(dpsm_depth(l, light.near, light.far) - window, 0.0, 1.0);
     at.depth = depth - dpsm_bias_slack(l, light, quantum, tolerance);
     return at;
+}
+
+// dpsm::plane
+
+/// The same where no plane is compared: half a texel's diagonal.
+const DPSM_PLANE_DIAGONAL: f32 = 0.7071068;
+
+/// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
+const DPSM_PLANE_OWN: f32 = 0.3;
+
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 128 eps (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+
+/// A receiver in its map, moved along its normal.
+struct DpsmPlane {
+    /// Disk coordinates of the moved receiver, in the receiver's own hemisphere.
+    uv: vec2<f32>,
+    /// What n . d gains for each radian along u and v: the lean of the plane, as long as the sine of
+    /// the incidence.
+    lean: vec2<f32>,
+    /// n . d of the moved plane at uv, and all that it may be too small by.
+    facing: f32,
+    /// The cosine of the incidence.
+    cosine: f32,
+    /// The angle of a texel there.
+    pitch: f32,
+    /// The plane's height above the light, in units of far - near as all depths are; less for a
+    /// receiver beyond far.
+    height: f32,
+    /// The moved receiver's distance in the same units, at most far's.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in these units, with all that it may be too near
+    /// by.
+    near: f32,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+}
+
+/// The receiver moved towards the light along its normal by `shift` texels times the sine of its
+/// incidence.
+///
+/// p, receiver: a light-space point and its dpsm_receiver; quantum, tolerance: as for
+/// dpsm_bias_slack. Domain: largest |component| of p in [2^-51, 2^60] or p = 0, 0 <= shift <= 2,
+/// far <= 2^60. Bound: docs/plane.md.
+fn dpsm_plane(
+    p: vec3<f32>,
+    receiver: DpsmReceiver,
+    shift: f32,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> DpsmPlane {
+    let hemisphere = dpsm_hemisphere(p);
+    let n = dpsm_flip(receiver.plane.xyz, hemisphere);
+    let l = max(receiver.distance, DPSM_SMALLEST);
+    let sum = l + abs(p.z);
+    let inverse = 1.0 / (l * sum);
+    let uv = p.xy * (inverse * l);
+    let cosine = min(receiver.plane.w * (inverse * sum), 1.0);
+    let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
+    let width = dpsm_texel_width(light.size, light.guard);
+    let pitch = width * (sum * (inverse * sum));
+    let lean = n.xy - uv * (n.z + cosine);
+    let moved = shift * sine;
+    let inside = min(light.far * (inverse * sum), 1.0);
+    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let range = 1.0 / (grown * (light.far - light.near));
+    return DpsmPlane(
+        uv - lean * (moved * width),
+        lean,
+        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine,
+        pitch,
+        receiver.plane.w * inside * range,
+        l * inside * range * (1.0 - moved * pitch * cosine),
+        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        hemisphere,
+    );
+}
+
+/// The four texels around a receiver: the place of the first, which has the least coordinates,
+/// counted from the map's top left, and how far the receiver is from its centre towards the others'.
+///
+/// Domain: as for dpsm_plane, size at least 2. Bound: docs/plane.md.
+fn dpsm_plane_four(at: DpsmPlane, light: DpsmLight) -> vec4<f32> {
+    let place = dpsm_disk_to_texture(at.uv, light.guard) * light.size - 0.5;
+    let first = clamp(floor(place), vec2<f32>(0.0), vec2<f32>(light.size - 2.0));
+    return vec4<f32>(first, place - first);
+}
+
+/// The share of the light by the four depths that a gather at the corner of four texels gives:
+/// lower left, lower right, upper right, upper left.
+///
+/// four: dpsm_plane_four. Domain: as for dpsm_plane, depths in [0, 1].
+fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
+    let step = at.pitch * at.lean;
+    let left = at.facing - step.x * four.z;
+    let right = left + step.x;
+    let up = step.y * four.w;
+    let down = up - step.y;
+    let facing = vec4<f32>(left + down, right + down, right + up, left + up);
+    let reach = stored + at.near;
+    let lit = reach * facing >= vec4<f32>(at.height);
+    let texel = at.pitch * at.cosine;
+    let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
+    let near = 1.0 - four.zw;
+    let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);
+    let bright = dot(select(vec4<f32>(0.0), weight, lit), vec4<f32>(1.0));
+    let both = bright + dot(select(vec4<f32>(0.0), weight, dark), vec4<f32>(1.0));
+    return select(1.0, bright / both, both > 0.0);
+}
+
+/// The depths of a moved receiver's own distance, less all bias: what is no nearer than the first is
+/// lit, what is nearer than the second, a texel nearer, is in shadow.
+///
+/// distance: the receiver's, before it was moved. Domain: as for dpsm_plane, of
+/// DPSM_PLANE_DIAGONAL. Bound: docs/plane.md.
+fn dpsm_plane_depths(
+    at: DpsmPlane,
+    distance: f32,
+    light: DpsmLight,
+    quantum: f32,
+    tolerance: f32,
+) -> vec2<f32> {
+    let sine = length(at.lean);
+    let texel = at.pitch * distance;
+    let own = distance - texel * (DPSM_PLANE_DIAGONAL * sine * at.cosine);
+    let lit = dpsm_receiver_depth(own - texel * DPSM_PLANE_OWN, light.near, light.far);
+    let dark = dpsm_receiver_depth(own - texel, light.near, light.far);
+    let slack = dpsm_bias_slack(distance, light, quantum, tolerance);
+    return vec2<f32>(lit - slack, dark - slack);
 }
 
 // dpsm::cube
@@ -1591,16 +1727,36 @@ fn dpsm_kernel_turn(direction: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
 }
 
-/// A direction for the spiral's first tap that looks random from pixel to pixel: a unit vector,
-/// its angle even within 4%.
+/// Cosine and sine of the golden section of a right angle, between one ring of four taps and the
+/// next.
+const DPSM_KERNEL_QUARTER: vec2<f32> = vec2<f32>(0.5646348864175503, 0.8253408053890465);
+
+/// Taps in rings of four, a right angle apart: how many rings.
 ///
-/// Domain: any pixel. Bound: length 1 within 152 eps.
+/// Domain: count <= 2^31. Exact.
+fn dpsm_kernel_rings(count: u32) -> u32 {
+    return max((count + 3u) / 4u, 1u);
+}
+
+/// The direction of the first tap of the next ring: turned by the golden section of a right angle.
+///
+/// Domain: a unit vector. Bound: 2.5 eps absolute, each component; 4 eps each time in length and
+/// angle.
+fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
+    let c = DPSM_KERNEL_QUARTER.x;
+    let s = DPSM_KERNEL_QUARTER.y;
+    return vec2<f32>(c * direction.x - s * direction.y, s * direction.x + c * direction.y);
+}
+
+/// A direction for a kernel's first tap that differs from pixel to pixel so that neighbours make
+/// up for each other: interleaved gradient noise (Jimenez 2014) in whole numbers. A unit vector.
+///
+/// pixel: place on the screen; by a light's coordinates the noise would show a moire. Domain: any
+/// pixel. Bound: length 1 within 152 eps.
 fn dpsm_kernel_rotation(pixel: vec2<u32>) -> vec2<f32> {
-    // an integer hash: odd factors, high bits folded onto low ones
-    var bits = (pixel.x * 0x9e3779b1u) ^ (pixel.y * 0x85ebca77u);
-    bits = (bits ^ (bits >> 15u)) * 0x2c1b3c6du;
-    bits = (bits ^ (bits >> 12u)) * 0x297a2d39u;
-    bits = bits ^ (bits >> 15u);
+    // shares of a turn in 2^-32: 0.06711056 x + 0.00583715 y, and 52.9829189 times it
+    let along = pixel.x * 288237660u + pixel.y * 25070368u;
+    let bits = along * 52u + (along >> 16u) * 64417u;
     let share = f32(bits >> 8u) * 0x1p-23 - 1.0;
     let start = vec2<f32>(1.0, DPSM_KERNEL_SIXTEENTH * share);
     var turned = start / length(start);
@@ -1727,19 +1883,265 @@ fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> Dps
     );
 }
 
-// dpsm::pcss
+/// How much nearer than the plane, in texels, is still lit.
+const DPSM_FILTER_OWN: f32 = 0.5;
+
+/// What a receiver at grazing incidence is to be moved by in addition: what half a texel's diagonal
+/// is more than the shift, rounded up.
+const DPSM_FILTER_GRAZING: f32 = 0.258;
+
+/// The smallest kernel's half-angle in texels: half a texel's diagonal.
+const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+
+/// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
+/// lie within it.
+const DPSM_FILTER_CONE: f32 = 0.1;
+
+/// The bias cone's half-angle in those of the light, where that is more.
+const DPSM_FILTER_WIDER: f32 = 1.3333334;
 
 /// Largest tangent of a kernel, 45 degrees: wider ones would need more taps than any have.
-const DPSM_PCSS_WIDEST: f32 = 1.0;
+const DPSM_FILTER_WIDEST: f32 = 1.0;
+
+/// What one tap in shadow adds to a sum in which a lit one adds 1: more than there are taps.
+const DPSM_FILTER_DARK: f32 = 1024.0;
+
+/// What all taps of a kernel share: where they read, and what they compare.
+///
+/// Taps come in rings of four: at an offset (x, y) in the unit disk, and at the same turned by one,
+/// two and three right angles. Places are disk coordinates with v pointing down, as texture
+/// coordinates do.
+struct DpsmDisk {
+    /// The receiver's place.
+    place: vec2<f32>,
+    /// What the place gains by x; by y it gains (y, -x) of that.
+    right: vec2<f32>,
+    /// The receiver's hemisphere.
+    hemisphere: u32,
+    /// n . d of the receiver's plane at the receiver, with all that it may be too small by.
+    facing: f32,
+    /// What that gains by x and y.
+    lean: vec2<f32>,
+    /// What it may gain by x^2 + y^2.
+    rest: f32,
+    /// The plane's height, as dpsm_plane gives it.
+    height: f32,
+    /// The receiver's distance, as dpsm_plane gives it.
+    distance: f32,
+    /// What a stored depth lacks to be a distance in their units.
+    near: f32,
+    /// How much nearer than the receiver a blocker must be for each unit of the tap's radius.
+    steep: f32,
+    /// How far from the receiver's direction any blocker counts, in the kernel's radii.
+    least: f32,
+}
+
+/// The disk of a kernel around a receiver.
+///
+/// at: dpsm_plane of DPSM_FILTER_SHIFT; tangent: of the kernel's half-angle; light_tangent: of the
+/// light's, as the receiver sees it; rotation: a unit vector, of the first tap. Domain: as for
+/// dpsm_plane, 2^-24 <= tangent <= 1, 0 <= light_tangent <= 2^24. Bound: docs/filter.md.
+fn dpsm_filter_cone(
+    at: DpsmPlane,
+    tangent: f32,
+    light_tangent: f32,
+    rotation: vec2<f32>,
+) -> DpsmDisk {
+    let square = dot(at.uv, at.uv);
+    let r = sqrt(square);
+    let radius = tangent * (0.5 + 0.5 * square);
+    let across = rotation * radius;
+    let aside = vec2<f32>(-rotation.y, rotation.x);
+    let sine = length(at.lean);
+    // the nearest texel's centre lies up to half a diagonal away
+    let texel = DPSM_FILTER_SMALLEST * at.pitch;
+    let rise = max(DPSM_FILTER_OWN * at.cosine, DPSM_FILTER_GRAZING * sine) + texel * sine;
+    // the lean is to first order in the disk; this bounds the rest (docs/filter.md)
+    let reach = tangent + texel;
+    let within = 1.0 / (1.0 - 0.5 * min(r * reach, 1.0));
+    let curved = reach * reach * (0.5 * r + 0.25 * reach) * (within * within * within);
+    return DpsmDisk(
+        vec2<f32>(at.uv.x, -at.uv.y),
+        vec2<f32>(across.x, -across.y),
+        at.hemisphere,
+        at.facing + rise * at.pitch,
+        vec2<f32>(dot(at.lean, rotation), dot(at.lean, aside)) * tangent,
+        sine * curved,
+        at.height,
+        at.distance,
+        at.near,
+        tangent / max(DPSM_FILTER_CONE, DPSM_FILTER_WIDER * light_tangent),
+        texel / tangent,
+    );
+}
+
+/// A map in its texture: the coordinates of its middle, and what one unit of the disk is there.
+///
+/// Domain: hemisphere 0 or 1. Bound: middle as for dpsm_light_coordinates, unit 4.5 eps relative.
+fn dpsm_filter_map(light: DpsmLight, hemisphere: u32) -> vec4<f32> {
+    let middle = dpsm_light_coordinates(light, hemisphere, vec2<f32>(0.5));
+    let extent = select(vec2<f32>(1.0), light.rectangle.zw, vec2<bool>(light.placement == DPSM_ATLAS));
+    return vec4<f32>(middle, extent * (0.5 / (1.0 + light.guard)));
+}
+
+/// Where four taps of a disk read: texture coordinates, and in which map.
+struct DpsmFour {
+    s: vec4<f32>,
+    t: vec4<f32>,
+    /// Which lie beyond the rim, and read the other hemisphere's map.
+    crossed: vec4<bool>,
+}
+
+/// Where four taps read: those beyond the rim continue in the other map, at the inverse of their
+/// radius.
+///
+/// offset: of the first in the unit disk; own: the receiver's map; other: the middle of the other one
+/// along x. Domain: as for dpsm_filter_cone. Bound: docs/filter.md.
+fn dpsm_filter_places(
+    disk: DpsmDisk,
+    own: vec4<f32>,
+    other: f32,
+    offset: vec2<f32>,
+) -> DpsmFour {
+    let step = dpsm_filter_step(disk, offset);
+    let u = disk.place.x + vec4<f32>(step.x, step.y, -step.x, -step.y);
+    let v = disk.place.y + vec4<f32>(step.y, -step.x, -step.y, step.x);
+    let far = u * u + v * v;
+    let inward = 1.0 / max(far, vec4<f32>(1.0));
+    let crossed = far > vec4<f32>(1.0);
+    return DpsmFour(
+        select(vec4<f32>(own.x), vec4<f32>(other), crossed) + u * inward * own.z,
+        own.y + v * inward * own.w,
+        crossed,
+    );
+}
+
+/// How far a tap's place is from the receiver's.
+///
+/// Domain: |offset| <= 1. Bound: 3 eps of the kernel's radius absolute.
+fn dpsm_filter_step(disk: DpsmDisk, offset: vec2<f32>) -> vec2<f32> {
+    return vec2<f32>(
+        disk.right.x * offset.x + disk.right.y * offset.y,
+        disk.right.y * offset.x - disk.right.x * offset.y,
+    );
+}
+
+/// What a tap that lies where a hemispherical light has no map reads: nearer than all.
+const DPSM_FILTER_UNMAPPED: f32 = -1.0;
+
+/// The layers of a receiver's own map and of the other one.
+///
+/// Domain: hemisphere 0 or 1. Exact.
+fn dpsm_filter_layers(light: DpsmLight, hemisphere: u32) -> vec2<u32> {
+    let other = DPSM_BACK - hemisphere;
+    return vec2<u32>(dpsm_light_layer(light, hemisphere), dpsm_light_layer(light, other));
+}
+
+/// Which of four taps are lit: no nearer than the receiver's plane.
+///
+/// offset: of the first in the unit disk; ring: its length; reach: the distances stored in the texels
+/// that they read, in the disk's units. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_lit(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    reach: vec4<f32>,
+) -> vec4<bool> {
+    let along = disk.lean.x * offset.x + disk.lean.y * offset.y;
+    let aside = disk.lean.y * offset.x - disk.lean.x * offset.y;
+    let facing = (disk.facing + disk.rest * ring) + vec4<f32>(along, aside, -along, -aside);
+    return reach * facing >= vec4<f32>(disk.height);
+}
+
+/// Which of four taps lie within the bias cone: so much nearer than the receiver that they shadow it
+/// though they lie beside its direction.
+///
+/// ring: their radius in the unit disk. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_within(disk: DpsmDisk, ring: f32, reach: vec4<f32>) -> vec4<bool> {
+    return reach * (1.0 + disk.steep * ring) < vec4<f32>(disk.distance);
+}
+
+/// The share of the light by the sum of what taps say: of those that say anything; 0 where none
+/// does.
+///
+/// sum: 1 for each lit tap, DPSM_FILTER_DARK for each in shadow. Domain: fewer than
+/// DPSM_FILTER_DARK taps. Bound: 2.5 eps relative.
+fn dpsm_filter_share(sum: vec4<f32>) -> f32 {
+    let all = dot(sum, vec4<f32>(1.0));
+    let dark = floor(all / DPSM_FILTER_DARK);
+    let lit = all - DPSM_FILTER_DARK * dark;
+    return lit / max(lit + dark, 1.0);
+}
+
+/// What four taps of a kernel say, to be summed.
+///
+/// offset, ring, stored: as for dpsm_filter_lit, stored depths. Domain: as for dpsm_filter_cone.
+fn dpsm_filter_even(
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> vec4<f32> {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    return select(says, vec4<f32>(1.0), lit);
+}
+
+/// The radius of a ring by the share of those farther in, and by its square.
+const DPSM_FILTER_DENSE: vec2<f32> = vec2<f32>(0.68, 0.32);
+
+/// The radius of a ring of taps that lie the denser the nearer they are to the middle: about the
+/// share of those farther in, to the power of 5/4.
+///
+/// Domain: shares in [0, 1]. Bound: 3 eps relative.
+fn dpsm_filter_dense(share: f32) -> f32 {
+    return share * (DPSM_FILTER_DENSE.x + DPSM_FILTER_DENSE.y * share);
+}
+
+/// What a kernel of fixed size has found so far.
+struct DpsmContact {
+    /// The sum of what its taps say.
+    sum: vec4<f32>,
+    /// The distance of the blocker that is farthest from the light, 0 before there is one.
+    farthest: f32,
+}
+
+/// What was found so far, and a ring more: nothing beyond what the farthest blocker asks for, so
+/// that the kernel narrows towards contact.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone, of a light under
+/// the kernel's own tangent.
+fn dpsm_filter_contact(
+    found: DpsmContact,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
+) -> DpsmContact {
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let dark = dpsm_filter_within(disk, ring, reach);
+    let blocks = select(select(vec4<f32>(0.0), reach, dark), vec4<f32>(0.0), lit);
+    let blocked = max(max(blocks.x, blocks.y), max(blocks.z, blocks.w));
+    let farthest = max(found.farthest, blocked);
+    // ring <= distance / farthest - 1 + least
+    let counted = farthest * (1.0 + ring - disk.least) <= disk.distance;
+    let says = select(vec4<f32>(0.0), vec4<f32>(DPSM_FILTER_DARK), dark);
+    let said = select(says, vec4<f32>(1.0), lit);
+    return DpsmContact(found.sum + select(vec4<f32>(0.0), said, vec4<bool>(counted)), farthest);
+}
+
+// dpsm::pcss
 
 /// What a search found.
 struct DpsmBlockers {
-    /// Sum over the blockers of the tangent of the cone that each asks for.
-    tangents: f32,
-    /// Taps that found a blocker.
-    count: u32,
-    /// Taps that lie where a hemispherical light has no map.
-    unmapped: u32,
+    /// The farthest blocker's stored depth among the first taps of all rings, the second ones, and so
+    /// on; below 0 where there is none.
+    farthest: vec4<f32>,
+    /// Whether they were all lit.
+    all: vec4<bool>,
 }
 
 /// The tangent of the cone in which a caster at the distance `blocker` from the light shades a
@@ -1747,40 +2149,55 @@ struct DpsmBlockers {
 /// behind.
 ///
 /// Domain: 0 <= radius <= 2^62, distances in [2^-51, 2^62]. Bound: 6.5 eps relative, and eps of
-/// distance / (distance - blocker) for the difference. At most DPSM_PCSS_WIDEST.
+/// distance / (distance - blocker) for the difference. At most DPSM_FILTER_WIDEST.
 fn dpsm_pcss_tangent(distance: f32, blocker: f32, radius: f32) -> f32 {
     let behind = max(distance - blocker, 0.0) / max(distance, DPSM_SMALLEST);
-    return min(behind * (radius / max(blocker, DPSM_SMALLEST)), DPSM_PCSS_WIDEST);
+    return min(behind * (radius / max(blocker, DPSM_SMALLEST)), DPSM_FILTER_WIDEST);
 }
 
-/// What was found so far, and one tap more: a blocker where its texel stores less than it compares.
+/// The radius of a ring of a search: the square of the share of taps farther in, so that most lie
+/// where blockers near the receiver are.
 ///
-/// stored: the texel's depth. Domain: as for dpsm_filter_lookup.
+/// Domain: shares in [0, 1]. Bound: eps relative.
+fn dpsm_pcss_ring(share: f32) -> f32 {
+    return share * share;
+}
+
+/// What was found so far, and a ring more.
+///
+/// offset, ring, stored: as for dpsm_filter_even. Domain: as for dpsm_filter_cone.
 fn dpsm_pcss_found(
     found: DpsmBlockers,
-    stored: f32,
-    at: DpsmLookup,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    radius: f32,
+    disk: DpsmDisk,
+    offset: vec2<f32>,
+    ring: f32,
+    stored: vec4<f32>,
 ) -> DpsmBlockers {
-    if !at.mapped {
-        return DpsmBlockers(found.tangents, found.count, found.unmapped + 1u);
-    }
-    if stored >= at.depth {
-        return found;
-    }
-    let blocker = dpsm_distance(stored, light.near, light.far);
-    let tangent = dpsm_pcss_tangent(receiver.distance, blocker, radius);
-    return DpsmBlockers(found.tangents + tangent, found.count + 1u, found.unmapped);
+    let reach = stored + disk.near;
+    let lit = dpsm_filter_lit(disk, offset, ring, reach);
+    let blocks = dpsm_filter_within(disk, ring, reach) & !lit;
+    return DpsmBlockers(
+        max(found.farthest, select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, blocks)),
+        found.all & lit,
+    );
 }
 
-/// The kernel's tangent that the blockers ask for, the mean of theirs; a texel's at least.
+/// The kernel's tangent that the farthest blocker asks for; half a texel's diagonal at least.
 ///
-/// pitch: the angle of a texel at the receiver. Domain: found.count <= 2^24. Bound: 2.5 eps
-/// relative, for one division.
-fn dpsm_pcss_width(found: DpsmBlockers, pitch: f32) -> f32 {
-    return max(found.tangents / max(f32(found.count), 1.0), pitch);
+/// distance: the receiver's; pitch: the angle of a texel there; radius: the light's. Domain: as for
+/// dpsm_pcss_tangent. Bound: docs/filter.md.
+fn dpsm_pcss_width(
+    found: DpsmBlockers,
+    distance: f32,
+    pitch: f32,
+    radius: f32,
+    light: DpsmLight,
+) -> f32 {
+    let each = found.farthest;
+    let farthest = max(max(each.x, each.y), max(each.z, each.w));
+    let blocker = dpsm_distance(farthest, light.near, light.far);
+    let asked = select(0.0, dpsm_pcss_tangent(distance, blocker, radius), farthest >= 0.0);
+    return min(max(asked, DPSM_FILTER_SMALLEST * pitch), DPSM_FILTER_WIDEST);
 }
 
 // dpsm::lights

@@ -127,6 +127,29 @@ fn axis(p: &[f64], face: f64) -> f64 {
     }
 }
 
+/// A dpsm_plane's words.
+fn plane(i: &[f64]) -> bool {
+    on_disk(&[0.8 * i[0], 0.8 * i[1]])
+        && length(&i[2..4]) <= 1.0 + 1e-4
+        && within(&i[4..5], 0.0, 4.0)
+        && within(&i[5..6], 0.0, 1.0)
+        && within(&i[6..7], 0.0, 4.0)
+        && within(&i[7..10], 0.0, two(60))
+        && i[10] <= 1.0
+}
+
+/// A dpsm_filter_cone's words.
+fn disk(i: &[f64]) -> bool {
+    largest(&i[..4]) <= 4.0
+        && i[4] <= 1.0
+        && within(&i[5..6], 0.0, 8.0)
+        && largest(&i[6..8]) <= 2.0
+        && within(&i[8..9], 0.0, 16.0)
+        && within(&i[9..12], 0.0, two(60))
+        && within(&i[12..13], 0.0, 16.0)
+        && within(&i[13..14], 0.0, two(30))
+}
+
 /// Within the unit disk, or on its rim up to rounding.
 fn on_disk(uv: &[f64]) -> bool {
     length(uv) <= 1.0 + 8.0 * EPS
@@ -446,6 +469,29 @@ bias {
         none;
     dpsm_lookup_biased Interval |i| point(&i[..3], -51, 61) && light(i, 4).inside(), none;
 }
+plane {
+    dpsm_plane Interval
+        |i| {
+            point(&i[..3], -51, 60)
+                && receiver(&i[3..8])
+                && within(&i[8..9], 0.0, 2.0)
+                && light(i, 9).inside()
+                && light(i, 9).far() <= two(60)
+                && within(&i[33..], 0.0, 1.0)
+        },
+        none;
+    dpsm_plane_four Interval |i| plane(&i[..11]) && light(i, 11).inside() && light(i, 11).0[15] >= 2.0, none;
+    dpsm_plane_share Interval
+        |i| plane(&i[..11]) && within(&i[11..13], 0.0, two(24)) && within(&i[13..], 0.0, 1.0), none;
+    dpsm_plane_depths Interval
+        |i| {
+            plane(&i[..11])
+                && within(&i[11..12], two(-51), two(61))
+                && light(i, 12).inside()
+                && within(&i[36..], 0.0, 1.0)
+        },
+        none;
+}
 cube {
     dpsm_cube_face Exact
         |i| i.iter().all(|c| *c == 0.0 || c.abs() >= two(-126)), |_, r, a| exact(r, a);
@@ -561,6 +607,9 @@ kernel {
     dpsm_kernel_ring Relative |i| i[0] < i[1] && i[1] <= two(24), |_, r, a| relative(r, a, 7.5);
     dpsm_kernel_turn Absolute
         |i| length(i) <= 1.0 + 8.0 * EPS, |_, r, a| absolute(r, a, 2.5, 1.0);
+    dpsm_kernel_rings Exact any, |_, r, a| exact(r, a);
+    dpsm_kernel_next Absolute
+        |i| length(i) <= 1.0 + 8.0 * EPS, |_, r, a| absolute(r, a, 2.5, 1.0);
     dpsm_kernel_rotation Absolute any, |_, _, a| absolute(&[1.0], &[length(a)], 152.0, 1.0);
     dpsm_kernel_guard Relative
         |i| within(&i[..1], 3.0 * std::f64::consts::SQRT_2 * i[1], two(24)) && within(&i[1..], 1.0, two(10)),
@@ -576,6 +625,37 @@ filter {
         };
     dpsm_filter_lookup Interval
         |i| receiver(&i[..5]) && on_disk(&i[16..18]) && i[18] <= 1.0 && light(i, 19).inside(), none;
+    dpsm_filter_cone Interval
+        |i| {
+            plane(&i[..11])
+                && within(&i[11..12], two(-24), 1.0)
+                && within(&i[12..13], 0.0, two(24))
+                && length(&i[13..]) <= 1.0 + 8.0 * EPS
+        },
+        none;
+    dpsm_filter_map Interval |i| light(i, 0).inside() && i[24] <= 1.0, none;
+    dpsm_filter_places Interval
+        |i| disk(&i[..14]) && within(&i[14..19], 0.0, 1.0) && on_disk(&i[19..]), none;
+    dpsm_filter_step Absolute
+        |i| disk(&i[..14]) && on_disk(&i[14..]),
+        |i, r, a| absolute(r, a, 3.0, length(&i[2..4]));
+    dpsm_filter_layers Exact |i| light(i, 0).inside() && i[24] <= 1.0, |_, r, a| exact(r, a);
+    dpsm_filter_lit Interval
+        |i| disk(&i[..14]) && on_disk(&i[14..16]) && within(&i[16..], 0.0, 2.0), none;
+    dpsm_filter_within Interval |i| disk(&i[..14]) && within(&i[14..], 0.0, 2.0), none;
+    dpsm_filter_share Interval
+        |i| i.iter().all(|sum| sum.fract() == 0.0 && (0.0..=two(18)).contains(sum)), none;
+    dpsm_filter_even Interval
+        |i| disk(&i[..14]) && on_disk(&i[14..16]) && within(&i[16..], 0.0, 1.0), none;
+    dpsm_filter_dense Relative |i| within(i, 0.0, 1.0), |_, r, a| relative(r, a, 4.0);
+    dpsm_filter_contact Interval
+        |i| {
+            within(&i[..5], 0.0, two(18))
+                && disk(&i[5..19])
+                && on_disk(&i[19..21])
+                && within(&i[21..], 0.0, 1.0)
+        },
+        none;
 }
 pcss {
     dpsm_pcss_tangent Relative
@@ -585,20 +665,28 @@ pcss {
             let cancelled = if i[0] == i[1] { 0.0 } else { i[0] / (i[0] - i[1]).abs() };
             relative(r, a, 6.5 + cancelled)
         };
+    dpsm_pcss_ring Relative |i| within(i, 0.0, 1.0), |_, r, a| relative(r, a, 1.0);
     dpsm_pcss_found Interval
         |i| {
-            // found, stored, at, receiver, light, radius
-            within(&i[..1], 0.0, two(62))
-                && within(&i[3..4], 0.0, 1.0)
-                && largest(&i[4..7]) <= 4.0
-                && receiver(&i[10..15])
-                && light(i, 15).inside()
-                && within(&i[39..], 0.0, two(62))
+            // found, disk, offset, ring, stored
+            within(&i[..4], -1.0, 1.0)
+                && within(&i[4..8], 0.0, 1.0)
+                && disk(&i[8..22])
+                && on_disk(&i[22..24])
+                && within(&i[24..], 0.0, 1.0)
         },
         none;
-    dpsm_pcss_width Relative
-        |i| within(&i[..1], 0.0, two(62)) && i[1] <= two(24) && within(&i[3..], 0.0, two(24)),
-        |_, r, a| relative(r, a, 2.5);
+    dpsm_pcss_width Interval
+        |i| {
+            // found, distance, pitch, radius, light
+            within(&i[..4], -1.0, 1.0)
+                && within(&i[4..8], 0.0, 1.0)
+                && within(&i[8..9], two(-51), two(60))
+                && within(&i[9..10], 0.0, 4.0)
+                && within(&i[10..11], 0.0, two(60))
+                && light(i, 11).inside()
+        },
+        none;
 }
 lights {
     dpsm_lights_turn Absolute
