@@ -422,6 +422,9 @@ fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
 /// share of the distance: 128 eps (docs/plane.md).
 const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
 
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
+const DPSM_PLANE_REACH: f32 = 1.000003814697265625;
+
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
     /// Disk coordinates of the moved receiver, in the receiver's own hemisphere.
@@ -474,7 +477,7 @@ fn dpsm_plane(
     let lean = n.xy - uv * (n.z + cosine);
     let moved = shift * sine;
     let inside = min(light.far * (inverse * sum), 1.0);
-    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let grown = tolerance + DPSM_PLANE_REACH;
     let range = 1.0 / (grown * (light.far - light.near));
     return DpsmPlane(
         uv - lean * (moved * width),
@@ -484,7 +487,7 @@ fn dpsm_plane(
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
         hemisphere,
     );
 }
@@ -933,7 +936,7 @@ const DPSM_FILTER_DENSE: vec2<f32> = vec2<f32>(0.68, 0.32);
 /// The radius of a ring of taps that lie the denser the nearer they are to the middle: about the
 /// share of those farther in, to the power of 5/4.
 ///
-/// Domain: shares in [0, 1]. Bound: 3 eps relative.
+/// Domain: shares in [0, 1]. Bound: 4 eps relative.
 fn dpsm_filter_dense(share: f32) -> f32 {
     return share * (DPSM_FILTER_DENSE.x + DPSM_FILTER_DENSE.y * share);
 }

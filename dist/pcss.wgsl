@@ -108,12 +108,6 @@ struct DpsmReceiver {
     distance: f32,
 }
 
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
-
-/// The same for each unit of near, 10 eps.
-const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
-
 /// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
 const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
@@ -145,6 +139,9 @@ fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
 /// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
 /// share of the distance: 128 eps (docs/plane.md).
 const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
+const DPSM_PLANE_REACH: f32 = 1.000003814697265625;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -198,7 +195,7 @@ fn dpsm_plane(
     let lean = n.xy - uv * (n.z + cosine);
     let moved = shift * sine;
     let inside = min(light.far * (inverse * sum), 1.0);
-    let grown = 1.0 + (tolerance + DPSM_BIAS_DISTANCE);
+    let grown = tolerance + DPSM_PLANE_REACH;
     let range = 1.0 / (grown * (light.far - light.near));
     return DpsmPlane(
         uv - lean * (moved * width),
@@ -208,7 +205,7 @@ fn dpsm_plane(
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * (grown + DPSM_BIAS_NEAR) * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
         hemisphere,
     );
 }

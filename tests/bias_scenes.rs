@@ -56,6 +56,7 @@ fn settings() -> Settings {
 
 #[test]
 fn texel_centre_has_no_fault() {
+    let settings = || Settings { bias: Bias::TexelCentre, ..settings() };
     let error = errors(&settings());
     assert_eq!((error.faults_shadow, error.faults_light), (0, 0));
     // a step of a cube's perspective depth is thicker than the thin gaps

@@ -168,7 +168,17 @@ fn bad_settings_are_refused() {
     refused("axis", &with(&["--axis=0,0,0"]), &["axis", "--axis"]);
     refused("picture", &["render", "cornell", "-o", "out.jpg"], &["out.jpg", "PNG"]);
     refused("near", &with(&["--near", "-1"]), &["near -1"]);
-    refused("filter-taps", &with(&["--taps", "8"]), &["--filter hard takes no --taps"]);
+    refused(
+        "bias-of-another-filter",
+        &with(&["--filter", "single", "--bias", "footprint"]),
+        &["--bias footprint is not for --filter single", "hard and hardware"],
+    );
+    refused(
+        "filter-of-another-bias",
+        &with(&["--filter", "hard", "--bias", "plane"]),
+        &["--bias plane is not for --filter hard", "--filter single"],
+    );
+    refused("filter-taps", &with(&["--taps", "8"]), &["--filter single takes no --taps"]);
     refused(
         "filter-no-taps",
         &with(&["--filter", "disk", "--taps", "0"]),

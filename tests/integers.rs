@@ -184,11 +184,17 @@ fn every_bit_of_the_longest_path_chooses_a_half() {
 #[test]
 fn counts_are_exact_up_to_two_to_the_24() {
     let counts = [1_u32, 2, 16, (1 << 23) + 1, (1 << 24) - 1, 1 << 24];
-    let found = |count: u32| ((count as f32, count, 0_u32), 0.0_f32);
-    let records: Vec<_> = counts.iter().map(|&count| record(found(count))).collect();
-    // as many blockers as their sum of tangents: the mean is exactly 1
-    for (result, count) in both("dpsm_pcss_width", &records).iter().zip(counts) {
-        assert_eq!(bits(result), [1.0_f32.to_bits()], "{count}");
+    // rings of four, rounded up
+    let records: Vec<_> = counts.iter().map(|&count| record((count,))).collect();
+    for (result, count) in both("dpsm_kernel_rings", &records).iter().zip(counts) {
+        assert_eq!(bits(result), [count.div_ceil(4)], "{count}");
+    }
+    // sums of up to 1020 taps in shadow, or lit, are told apart
+    let sums = |dark: u32, lit: u32| [(1024 * dark + lit) as f32, 0.0, 0.0, 0.0];
+    let shares = [(0, 1020, 1.0_f32), (1020, 0, 0.0), (510, 510, 0.5), (1, 0, 0.0), (0, 1, 1.0)];
+    let records: Vec<_> = shares.iter().map(|&(dark, lit, _)| record((sums(dark, lit),))).collect();
+    for (result, (_, _, share)) in both("dpsm_filter_share", &records).iter().zip(shares) {
+        assert_eq!(bits(result), [share.to_bits()]);
     }
     // of each ring the first is below the last, which is at most 1
     let rings: Vec<_> =
@@ -196,19 +202,5 @@ fn counts_are_exact_up_to_two_to_the_24() {
     for pair in both("dpsm_kernel_ring", &rings).chunks(2) {
         let [first, last] = [&pair[0], &pair[1]].map(|word| f32::from_bits(bits(word)[0]));
         assert!(0.0 < first && first <= last && last <= 1.0, "{first} {last}");
-    }
-    // one blocker, and one unmapped tap, more
-    let receiver = (Vec3::new(0.0_f32, 0.0, 1.0), 2.0_f32, 2.0_f32);
-    let records: Vec<_> = [(1 << 24, true), (1 << 24, false), (u32::MAX - 1, true)]
-        .map(|(count, mapped): (u32, bool)| {
-            let at = (Vec2::new(0.5_f32, 0.5), 0.5_f32, (0_u32, 0_u32, mapped));
-            let rest = (light(DPSM_LAYERS), 0.1_f32);
-            record(((0.5_f32, count, count), 0.25_f32, at, receiver, rest))
-        })
-        .into();
-    let results = both("dpsm_pcss_found", &records);
-    let expected = [[(1 << 24) + 1, 1 << 24], [1 << 24, (1 << 24) + 1], [u32::MAX, u32::MAX - 1]];
-    for (result, expected) in results.iter().zip(expected) {
-        assert_eq!(integers(result), expected);
     }
 }

@@ -409,8 +409,9 @@ fn sources_stay_within_their_bounds() {
 
 #[test]
 fn linear_sampling_comes_nearer_to_the_coverage_than_the_hard_test() {
-    let hard = room(8, settings());
-    let linear = room(8, Settings { sampling: Sampling::Linear, ..settings() });
+    let footprint = Settings { bias: Bias::Footprint, ..settings() };
+    let hard = room(8, footprint.clone());
+    let linear = room(8, Settings { sampling: Sampling::Linear, ..footprint });
     let truth = truth_of(&hard);
     let error = |frame: &Frame| {
         let maps = cpu::make_maps(frame).unwrap();

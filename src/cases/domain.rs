@@ -64,9 +64,9 @@ pub fn received(p: [f32; 3]) -> Promise {
     sized(-51, 62, p)
 }
 
-/// Normals of receivers: 0 or in [2^-60, 2^61]; smaller ones count as 0.
+/// Normals of receivers: 0 or in [2^-50, 2^61]; smaller ones count as 0.
 pub fn normals(v: [f32; 3]) -> Promise {
-    sized(-60, 61, v)
+    sized(-50, 61, v)
 }
 
 /// Vertices of edges and triangles, in [2^-50, 2^62] each: nearer ones are finite, the light's

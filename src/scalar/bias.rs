@@ -36,8 +36,8 @@ pub const DPSM_BIAS_DEPTH: f64 = 1.0 / (1u64 << 22) as f64;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 pub const DPSM_BIAS_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 24) as f64;
 
-/// The square of the shortest normal that is one: 2^-120.
-pub const DPSM_BIAS_NORMAL: f64 = 1.0 / (1u128 << 120) as f64;
+/// The square of the shortest normal that is one: 2^-100.
+pub const DPSM_BIAS_NORMAL: f64 = 1.0 / (1u128 << 100) as f64;
 
 /// The receiver at a light-space point with a normal of any length, of either side.
 pub fn dpsm_receiver<T: Float>(p: Vec3<T>, normal: Vec3<T>) -> DpsmReceiver<T> {

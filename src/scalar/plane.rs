@@ -1,8 +1,6 @@
 //! Port of `wgsl/plane.wesl`.
 
-use super::bias::{
-    DPSM_BIAS_DEPTH, DPSM_BIAS_DISTANCE, DPSM_BIAS_NEAR, DpsmReceiver, dpsm_bias_slack,
-};
+use super::bias::{DPSM_BIAS_DEPTH, DpsmReceiver, dpsm_bias_slack};
 use super::depth::dpsm_receiver_depth;
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::{dpsm_flip, dpsm_hemisphere};
@@ -21,6 +19,9 @@ pub const DPSM_PLANE_OWN: f64 = 0.3;
 
 /// How far rounding may turn and move two planes against each other: 128 eps.
 pub const DPSM_PLANE_ROUNDING: f64 = 1.0 / 65536.0;
+
+/// What a stored distance is to be taken for: 32 eps more.
+pub const DPSM_PLANE_REACH: f64 = 1.000003814697265625;
 
 /// A receiver in its map, moved along its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +70,7 @@ pub fn dpsm_plane<T: Float>(
     let lean = n.xy() - uv * (n.z + cosine);
     let moved = shift * sine;
     let inside = (light.far * (inverse * sum)).min(one);
-    let grown = one + (tolerance + T::lit(DPSM_BIAS_DISTANCE));
+    let grown = tolerance + T::lit(DPSM_PLANE_REACH);
     let range = one / (grown * (light.far - light.near));
     let rounding = T::lit(DPSM_PLANE_ROUNDING);
     DpsmPlane {
@@ -80,8 +81,7 @@ pub fn dpsm_plane<T: Float>(
         pitch,
         height: receiver.plane.w * inside * range,
         distance: l * inside * range * (one - moved * pitch * cosine),
-        near: light.near * (grown + T::lit(DPSM_BIAS_NEAR)) * range
-            + (quantum + T::lit(DPSM_BIAS_DEPTH)),
+        near: light.near * grown * range + (quantum + T::lit(DPSM_BIAS_DEPTH)),
         hemisphere,
     }
 }

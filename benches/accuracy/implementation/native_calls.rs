@@ -3,8 +3,8 @@ structs! {
     DpsmBlockers { farthest, all }
     DpsmCasterFragment { depth, keep }
     DpsmCasterVertex { clip, hemisphere_value }
-    DpsmCorner { position, normal }
     DpsmContact { sum, farthest }
+    DpsmCorner { position, normal }
     DpsmDisk { place, right, hemisphere, facing, lean, rest, height, distance, near, steep, least }
     DpsmFour { s, t, crossed }
     DpsmHull { a, b, c }

@@ -412,7 +412,7 @@ visibility {
 }
 bias {
     dpsm_receiver Absolute
-        |i| point(&i[..3], -51, 62) && point(&i[3..], -100, 126),
+        |i| point(&i[..3], -51, 62) && point(&i[3..], -50, 61),
         |i, r, a| {
             let l = length(&i[..3]);
             absolute(&r[..3], &a[..3], 11.0, 1.0)
