@@ -149,6 +149,23 @@ fn what_is_less_than_a_texel_in_front_says_nothing_and_more_is_shadow() {
 }
 
 #[test]
+fn own_distance_is_lit_to_three_tenths_of_a_texel_and_dark_from_a_whole_one() {
+    let light = light();
+    let mut rng = rng("depths");
+    for _ in 0..2_000 {
+        let p = unit(&mut rng).widen() * 5.0;
+        let receiver = dpsm_receiver(p, unit(&mut rng).widen());
+        let at = dpsm_plane(p, receiver, DPSM_PLANE_DIAGONAL, light, 0.0, 0.0);
+        let depths = dpsm_plane_depths(at, receiver.distance, light, 0.0, 0.0);
+        let texel = at.pitch * 5.0 / (light.far - light.near);
+        assert!((depths.x - depths.y - 0.7 * texel).abs() <= 1e-12, "{depths:?}");
+        // no farther than the moved receiver's own
+        let own = at.distance - at.near;
+        assert!((own - depths.x - 0.3 * texel).abs() <= 2e-5, "{own} {depths:?}");
+    }
+}
+
+#[test]
 fn undecided_texels_are_left_out_of_the_mean() {
     let light = light();
     let p = Vec3::new(1.0, 2.0, 4.0);

@@ -789,7 +789,7 @@ MUTATIONS = [
     ("plane.rs", "[depth(T::lit(DPSM_PLANE_OWN)), depth(T::lit(1.0))]", "[depth(T::lit(0.0)), depth(T::lit(1.0))]",
      "plane", "what_is_less_than_a_texel_in_front_says_nothing_and_more_is_shadow"),
     ("plane.rs", "[depth(T::lit(DPSM_PLANE_OWN)), depth(T::lit(1.0))]", "[depth(T::lit(DPSM_PLANE_OWN)), depth(T::lit(1.5))]",
-     "plane", "what_is_less_than_a_texel_in_front_says_nothing_and_more_is_shadow"),
+     "plane", "own_distance_is_lit_to_three_tenths_of_a_texel_and_dark_from_a_whole_one"),
     ("filter.rs", "far.map(|far| one / far.max(one))", "far.map(|far| one / far.max(one).sqrt())",
      "plane", "taps_read_the_directions_that_they_stand_for_on_either_side_of_the_rim"),
     ("filter.rs", "select(own.x, other, crossed[i])", "own.x",
