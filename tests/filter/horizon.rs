@@ -30,6 +30,8 @@ fn grazing_receivers_behind_a_wall_all_around_are_in_shadow() {
         let taps = narrow_taps(hard(16));
         let lit = dpsm_filter_disk(&maps, p, receiver, 0.087, light, taps, first());
         assert_eq!(lit, 0.0, "{p:?}, {normal:?}");
+        let lit = dpsm_filter_reproject(&maps, p, 0.087, receiver, light, taps, first());
+        assert_eq!(lit, 0.0, "{p:?}, {normal:?}");
     }
 }
 

@@ -121,6 +121,10 @@ fn hemispherical_light_darkens_taps_beyond_its_rim_and_no_others() {
             let p = Vec3::new(0.6 * off.cos(), 0.8 * off.cos(), off.sin());
             let receiver = dpsm_receiver(p, p);
             let lit = dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first());
+            let old = dpsm_filter_reproject(&maps, p, tangent, receiver, light, taps, first());
+            if off < -tangent.atan() {
+                assert_eq!(old, 0.0, "light fringe at {off}");
+            }
             if off > tangent.atan() {
                 assert!((lit - 1.0).abs() <= 1e-13, "dark fringe at {off}: {lit}");
             }
@@ -250,6 +254,9 @@ fn atlas_filters_like_layers() {
         let receiver = dpsm_receiver(p, unit(&mut rng).widen());
         let value =
             |maps, light| dpsm_filter_disk(maps, p, receiver, 0.1, light, hard(16), first());
+        assert_eq!(value(&two, layers), value(&one, atlas));
+        let value =
+            |maps, light| dpsm_filter_reproject(maps, p, 0.1, receiver, light, hard(16), first());
         assert_eq!(value(&two, layers), value(&one, atlas));
         let value = |maps, light| dpsm_visibility_plane(maps, p, receiver, light, 0.0, 0.0);
         assert_eq!(value(&two, layers), value(&one, atlas));

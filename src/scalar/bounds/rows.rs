@@ -529,7 +529,7 @@ cube {
         };
     dpsm_cube_slack Relative
         |i| light(i, 1).inside() && within(&i[..1], i[4], two(62)) && within(&i[25..], 0.0, 1.0),
-        |_, r, a| relative(r, a, 8.0);
+        |_, r, a| relative(r, a, 11.0);
     dpsm_cube_lookup_along_centre Interval
         |i| {
             point(&i[..3], -51, 61)
@@ -620,7 +620,7 @@ filter {
         |i| receiver(&i[..5]) && light(i, 5).inside() && within(&i[31..], 0.0, 1.0),
         |_, r, a| {
             exact(&r[..6], &a[..6])
-                .or(relative(&r[6..15], &a[6..15], 4.5))
+                .or(relative(&r[6..15], &a[6..15], 6.0))
                 .or(relative(&r[15..], &a[15..], 12.0))
         };
     dpsm_filter_lookup Interval
