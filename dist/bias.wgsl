@@ -240,11 +240,11 @@ const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 
-/// The square of the shortest normal that is one: 2^-120.
-const DPSM_BIAS_NORMAL: f32 = 0x1p-120;
+/// The square of the shortest normal that is one: 2^-100.
+const DPSM_BIAS_NORMAL: f32 = 0x1p-100;
 
 /// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
-/// or one shorter than 2^-60, gives the plane that faces the light.
+/// or one shorter than 2^-50, gives the plane that faces the light.
 ///
 /// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
 /// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or

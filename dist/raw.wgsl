@@ -574,7 +574,8 @@ const DPSM_FILTER_ROUNDING: f32 = 0x1p-21;
 
 /// The reader of a receiver's taps.
 ///
-/// Domain: as for dpsm_receiver and dpsm_bias_slack. Bound: 4.5 eps relative, slack 12.
+/// Domain: as for dpsm_receiver and dpsm_bias_slack. Bound: 6 eps relative, the quotient
+/// of 1 and a texel's width; slack 12.
 fn dpsm_filter_reader(receiver: DpsmReceiver, light: DpsmLight, taps: DpsmTaps) -> DpsmReader {
     let width = dpsm_texel_width(light.size, light.guard);
     let range = light.far - light.near;

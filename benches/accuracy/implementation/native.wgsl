@@ -1029,11 +1029,11 @@ const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 
-/// The square of the shortest normal that is one: 2^-120.
-const DPSM_BIAS_NORMAL: f32 = 0x1p-120;
+/// The square of the shortest normal that is one: 2^-100.
+const DPSM_BIAS_NORMAL: f32 = 0x1p-100;
 
 /// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
-/// or one shorter than 2^-60, gives the plane that faces the light.
+/// or one shorter than 2^-50, gives the plane that faces the light.
 ///
 /// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
 /// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
@@ -1483,7 +1483,7 @@ fn dpsm_cube_lookup(p: vec3<f32>, light: DpsmLight) -> DpsmLookup {
 /// dpsm_bias_slack for a cube: what is left of the bias where the same direction is compared, in
 /// units of the stored depth, at the distance z along a face's axis.
 ///
-/// Domain: 0 < near < far <= 2^62, z >= near. Bound: 8 eps relative.
+/// Domain: 0 < near < far <= 2^62, z >= near. Bound: 11 eps relative.
 fn dpsm_cube_slack(z: f32, light: DpsmLight, quantum: f32) -> f32 {
     let steps = DPSM_CUBE_STORED * ((light.far + light.near) / max(z, light.near)) + DPSM_CUBE_OWN;
     return quantum + steps * (light.far / (light.far - light.near));
@@ -1826,7 +1826,8 @@ const DPSM_FILTER_ROUNDING: f32 = 0x1p-21;
 
 /// The reader of a receiver's taps.
 ///
-/// Domain: as for dpsm_receiver and dpsm_bias_slack. Bound: 4.5 eps relative, slack 12.
+/// Domain: as for dpsm_receiver and dpsm_bias_slack. Bound: 6 eps relative, the quotient
+/// of 1 and a texel's width; slack 12.
 fn dpsm_filter_reader(receiver: DpsmReceiver, light: DpsmLight, taps: DpsmTaps) -> DpsmReader {
     let width = dpsm_texel_width(light.size, light.guard);
     let range = light.far - light.near;
