@@ -211,9 +211,9 @@ fn dpsm_lookup(p: vec3<f32>, light: DpsmLight) -> DpsmLookup {
 /// plane's distance in that same direction (dpsm_visibility_texel_centre; Dou et al. 2014, here
 /// rational in uv), or lower the receiver's own by the most that the plane changes over the window
 /// of texels that is read (dpsm_visibility_footprint). What is left are the storage quantum, the
-/// arithmetic and what the map's method is allowed: dpsm_bias_slack. Without a normal, the window's
-/// term for the steepest incidence to be kept clean (dpsm_visibility_without_normal). The constant
-/// bias is dpsm_visibility's. Derivations and what each costs in docs/bias.md.
+/// arithmetic and what the map's method is allowed: dpsm_bias_slack. The constant bias is
+/// dpsm_visibility's; dpsm_visibility_plane reads four texels and needs no such window. Derivations
+/// and what each costs in docs/bias.md.
 
 /// A receiver: its plane and its distance.
 struct DpsmReceiver {
@@ -340,21 +340,6 @@ fn dpsm_bias_footprint(
     return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
 }
 
-/// The footprint bias for a receiver without a normal: enough for every incidence whose cosine is
-/// at least the given one. It costs the steepest one's bias everywhere, and steeper receivers
-/// shadow themselves.
-///
-/// Domain and bound: as for dpsm_bias_footprint.
-fn dpsm_bias_without_normal(
-    distance: f32,
-    cosine: f32,
-    uv: vec2<f32>,
-    texels: f32,
-    light: DpsmLight,
-) -> f32 {
-    return dpsm_bias_plane(cosine, distance, dpsm_bias_window(uv, texels, light), light);
-}
-
 /// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
 /// map. Looked up at dpsm_disk_to_texture of it, that texel is the one that is read, whatever the
 /// rounding at its borders.
@@ -380,48 +365,20 @@ fn dpsm_lookup_texel_centre(
     quantum: f32,
     tolerance: f32,
 ) -> DpsmLookup {
-    return dpsm_lookup_along_centre(p, receiver, light.far, light, quantum, tolerance);
-}
-
-/// The same, but of the receiver itself where that is nearer: fewer creases shadow themselves, and
-/// an occluder is forgiven that is nearer to the plane than the plane falls off towards the centre.
-///
-/// Domain: as dpsm_lookup_texel_centre.
-fn dpsm_lookup_texel_centre_or_own(
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    quantum: f32,
-    tolerance: f32,
-) -> DpsmLookup {
-    return dpsm_lookup_along_centre(p, receiver, receiver.distance, light, quantum, tolerance);
-}
-
-/// The same, of the plane up to the distance `limit`.
-///
-/// Domain: as dpsm_lookup_texel_centre, 0 <= limit <= 2^62.
-fn dpsm_lookup_along_centre(
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    limit: f32,
-    light: DpsmLight,
-    quantum: f32,
-    tolerance: f32,
-) -> DpsmLookup {
     var at = dpsm_lookup(p, light);
     let centre = dpsm_texel_centre(dpsm_project_own(p), light);
     let st = dpsm_disk_to_texture(centre, light.guard);
     at.coordinates = dpsm_light_coordinates(light, at.hemisphere, st);
     let there = dpsm_receiver_distance(receiver, centre, at.hemisphere);
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
-    let compared = select(receiver.distance, min(there, limit), there > DPSM_SMALLEST);
+    let compared = select(receiver.distance, min(there, light.far), there > DPSM_SMALLEST);
     let depth = clamp(dpsm_depth(compared, light.near, light.far), 0.0, 1.0);
     at.depth = depth - dpsm_bias_slack(compared, light, quantum, tolerance);
     return at;
 }
 
 /// Where a receiver looks, and the depth that it compares, less a window's bias
-/// (dpsm_bias_footprint or dpsm_bias_without_normal) and the slack.
+/// (dpsm_bias_footprint) and the slack.
 ///
 /// Domain: as for dpsm_lookup_texel_centre. A lit plane is never shadowed by itself at any texel of
 /// the window.
@@ -456,24 +413,6 @@ fn dpsm_visibility_texel_centre(
     return select(0.0, lit, at.mapped);
 }
 
-/// The shadow test along the centre of the receiver's texel, of its plane or of itself: 1 lit, 0 in
-/// shadow.
-///
-/// Domain: as for dpsm_lookup_texel_centre_or_own; for a sampler that takes the nearest texel.
-fn dpsm_visibility_texel_centre_or_own(
-    maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    quantum: f32,
-    tolerance: f32,
-) -> f32 {
-    let at = dpsm_lookup_texel_centre_or_own(p, receiver, light, quantum, tolerance);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
-    return select(0.0, lit, at.mapped);
-}
-
 /// The shadow test less the footprint bias of a window: 1 lit, 0 in shadow.
 ///
 /// texels: 1/2 where the sampler takes the nearest texel, 1 for its 2 x 2 comparisons.
@@ -489,27 +428,6 @@ fn dpsm_visibility_footprint(
     tolerance: f32,
 ) -> f32 {
     let window = dpsm_bias_footprint(receiver, dpsm_project_own(p), texels, light);
-    let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
-    return select(0.0, lit, at.mapped);
-}
-
-/// The shadow test without a normal, for incidences whose cosine is at least the given one: 1 lit,
-/// 0 in shadow.
-///
-/// texels: as for dpsm_visibility_footprint. Domain: as for dpsm_lookup_biased.
-fn dpsm_visibility_without_normal(
-    maps: texture_depth_2d_array,
-    comparison: sampler_comparison,
-    p: vec3<f32>,
-    cosine: f32,
-    light: DpsmLight,
-    texels: f32,
-    quantum: f32,
-    tolerance: f32,
-) -> f32 {
-    let uv = dpsm_project_own(p);
-    let window = dpsm_bias_without_normal(length(p), cosine, uv, texels, light);
     let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
     let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
     return select(0.0, lit, at.mapped);

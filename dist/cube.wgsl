@@ -239,15 +239,13 @@ fn dpsm_cube_slack(z: f32, light: DpsmLight, quantum: f32) -> f32 {
     return quantum + steps * (light.far / (light.far - light.near));
 }
 
-/// dpsm_lookup_along_centre for a cube: the depth along the centre of the receiver's texel, of its
-/// plane up to the distance `limit`, less the slack.
+/// dpsm_lookup_texel_centre for a cube: the depth along the centre of the receiver's texel, of its
+/// plane, less the slack.
 ///
-/// limit: far, or the receiver's own distance as in dpsm_lookup_texel_centre_or_own.
 /// Domain: as dpsm_cube_lookup, |p| <= 2^62. A lit plane is never shadowed by itself.
-fn dpsm_cube_lookup_along_centre(
+fn dpsm_cube_lookup_texel_centre(
     p: vec3<f32>,
     receiver: DpsmReceiver,
-    limit: f32,
     light: DpsmLight,
     quantum: f32,
 ) -> DpsmLookup {
@@ -260,7 +258,7 @@ fn dpsm_cube_lookup_along_centre(
     let facing = dot(receiver.plane.xyz, dpsm_cube_unview(direction, at.hemisphere));
     let leaned = max(facing, 0.0) + DPSM_RECEIVER_ROUNDING * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
-    let there = min(receiver.plane.w / leaned, limit / l);
+    let there = min(receiver.plane.w / leaned, light.far / l);
     let z = select(receiver.distance / l, there, facing > 0.0);
     at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
     return at;
@@ -269,7 +267,7 @@ fn dpsm_cube_lookup_along_centre(
 /// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
 /// slack. Along a face's axis a plane is at h / (n . (x, y, 1)), so it is nearest in a corner.
 ///
-/// Domain: as dpsm_cube_lookup_along_centre, texels >= 0. A lit plane is never shadowed by itself
+/// Domain: as dpsm_cube_lookup_texel_centre, texels >= 0. A lit plane is never shadowed by itself
 /// at any texel of the window.
 fn dpsm_cube_lookup_footprint(
     p: vec3<f32>,
@@ -282,22 +280,6 @@ fn dpsm_cube_lookup_footprint(
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x + normal.y);
     return dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum);
-}
-
-/// The same without a normal, for incidences whose cosine is at least the given one.
-///
-/// Domain: as dpsm_cube_lookup_footprint, 0 <= cosine <= 1.
-fn dpsm_cube_lookup_without_normal(
-    p: vec3<f32>,
-    cosine: f32,
-    texels: f32,
-    light: DpsmLight,
-    quantum: f32,
-) -> DpsmLookup {
-    // the normal's part across the axis is at most 1 long, and may point to a corner
-    let side = texels * dpsm_texel_width(light.size, light.guard);
-    let rise = length(vec2<f32>(side));
-    return dpsm_cube_lookup_rising(p, cosine * length(p), rise, light, quantum);
 }
 
 /// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)

@@ -162,8 +162,8 @@ fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32
 /// times the sine of its incidence.
 const DPSM_PLANE_SHIFT: f32 = 0.35;
 
-/// The same where no plane is compared: half a texel's diagonal.
-const DPSM_PLANE_DIAGONAL: f32 = 0.7071068;
+/// The same where no plane is compared: half a texel's diagonal, rounded up.
+const DPSM_PLANE_DIAGONAL: f32 = 0x1.6a09e8p-1;
 
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
@@ -173,7 +173,7 @@ const DPSM_PLANE_OWN: f32 = 0.3;
 const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
 
 /// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 1.000003814697265625;
+const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {

@@ -434,7 +434,7 @@ const DPSM_PLANE_SHIFT: f32 = 0.35;
 const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
 
 /// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 1.000003814697265625;
+const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -646,8 +646,8 @@ const DPSM_FILTER_OWN: f32 = 0.5;
 /// is more than the shift, rounded up.
 const DPSM_FILTER_GRAZING: f32 = 0.258;
 
-/// The smallest kernel's half-angle in texels: half a texel's diagonal.
-const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+/// The smallest kernel's half-angle in texels: half a texel's diagonal, rounded up.
+const DPSM_FILTER_SMALLEST: f32 = 0x1.6a09e8p-1;
 
 /// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
 /// lie within it.

@@ -191,11 +191,6 @@ impl Frame {
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
         }
-        if let Bias::WithoutNormal(cosine) = settings.bias
-            && !(0.0..=1.0).contains(&cosine)
-        {
-            return Err(FrameError::Cosine(cosine));
-        }
         let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
         let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
         // with nothing to reach, far is near's thousandfold all the same

@@ -268,22 +268,6 @@ fn sampling_functions_agree_with_their_ports() {
                 dpsm_visibility_footprint(&maps, p, receiver, light, 0.5, quantum, tolerance)
             },
         );
-        let without_normal = |i: usize| {
-            let uv = dpsm_project_own(points[i]);
-            dpsm_bias_without_normal(points[i].length(), 0.1, uv, 0.5, light)
-        };
-        check(
-            "dpsm_visibility_without_normal",
-            records(&|_, words| {
-                (0.1_f32, light, 0.5_f32).write(words);
-                (quantum, tolerance).write(words);
-            }),
-            &|i| dpsm_lookup_biased(points[i], without_normal(i), light, quantum, tolerance),
-            &|i| {
-                let p = points[i];
-                dpsm_visibility_without_normal(&maps, p, 0.1, light, 0.5, quantum, tolerance)
-            },
-        );
     }
 }
 

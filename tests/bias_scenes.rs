@@ -93,14 +93,6 @@ fn two_by_two_comparisons_leave_lit_surfaces_wholly_lit() {
 }
 
 #[test]
-fn own_distance_makes_fewer_points_wrong_beside_creases() {
-    let of = |bias| errors(&Settings { bias, ..settings() });
-    let (plane, own) = (of(Bias::TexelCentre), of(Bias::TexelCentreOrOwn));
-    assert_eq!(own.faults_shadow, 0);
-    assert!(plane.false_shadow > own.false_shadow * 3 / 2, "{plane:?} {own:?}");
-}
-
-#[test]
 fn light_that_is_turned_sees_the_same_normals() {
     let place = Place::built_in("cornell", 1);
     let light = place.light;

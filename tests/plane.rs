@@ -157,7 +157,7 @@ fn own_distance_is_lit_to_three_tenths_of_a_texel_and_dark_from_a_whole_one() {
         let receiver = dpsm_receiver(p, unit(&mut rng).widen());
         let at = dpsm_plane(p, receiver, DPSM_PLANE_DIAGONAL, light, 0.0, 0.0);
         let depths = dpsm_plane_depths(at, receiver.distance, light, 0.0, 0.0);
-        let texel = at.pitch * 5.0 / (light.far - light.near);
+        let texel = at.pitch * receiver.distance / (light.far - light.near);
         assert!((depths.x - depths.y - 0.7 * texel).abs() <= 1e-12, "{depths:?}");
         // no farther than the moved receiver's own
         let own = at.distance - at.near;
@@ -207,7 +207,7 @@ fn taps_read_the_directions_that_they_stand_for_on_either_side_of_the_rim() {
     for _ in 0..20_000 {
         let p = unit(&mut rng).widen() * 5.0;
         let at = dpsm_plane(p, dpsm_receiver(p, p), 0.0, light, 0.0, 0.0);
-        let turn = f64::from(uniform(&mut rng, 0.0, 6.28));
+        let turn = f64::from(uniform(&mut rng, 0.0, std::f32::consts::TAU));
         let rotation = Vec2::new(turn.cos(), turn.sin());
         let tangent = f64::from(uniform(&mut rng, 0.01, 0.5));
         let disk = dpsm_filter_cone(at, tangent, tangent, rotation);

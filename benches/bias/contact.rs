@@ -137,9 +137,7 @@ pub fn contact(device: &Device) -> Result<(), GpuError> {
             );
         };
         row("texel-centre", judged.of_frame(Bias::TexelCentre));
-        row("texel-centre-or-own", judged.of_frame(Bias::TexelCentreOrOwn));
         row("footprint", judged.of_frame(Bias::Footprint));
-        row("no-normal", judged.of_frame(Bias::WITHOUT_NORMAL));
         row("constant", judged.of_frame(Bias::Constant(None)));
         let DpsmLight { near, far, .. } = frame.light;
         let tuned = TRIES

@@ -37,7 +37,6 @@ pub fn faults(device: &Device) -> Result<(), GpuError> {
     let tap = Filter::Disk(Taps { count: 1, kernel: Kernel::Tangent(0.0) });
     let biases = [
         ("texel-centre", Bias::TexelCentre, single),
-        ("texel-centre-or-own", Bias::TexelCentreOrOwn, single),
         ("footprint", Bias::Footprint, single),
         ("constant", Bias::Constant(None), single),
         ("one tap of the disk", Bias::TexelCentre, tap),

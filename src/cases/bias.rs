@@ -65,24 +65,14 @@ pub fn add(function: &str, cases: &mut Cases) {
             cases.each(&WINDOWS, any, |texels| (oblique, disk([0.6, 0.8]), texels, LIGHT));
             cases.each(&LIGHTS, any, |light| (oblique, inside, 0.5, light));
         }
-        "dpsm_bias_without_normal" => {
-            cases.each(&COSINES, any, |cosine| (3.0, cosine, inside, (0.5, LIGHT)));
-            cases.each(&WINDOWS, any, |texels| (3.0, 0.5, inside, (texels, LIGHT)));
-            cases.each(&LIGHTS, any, |light| (3.0, 0.5, inside, (0.5, light)));
-        }
         "dpsm_texel_centre" => {
             cases.each(&DISKS, |uv| up_to(63, uv), |uv| (disk(uv), LIGHT));
             cases.each(&LIGHTS, any, |light| (inside, light));
         }
-        "dpsm_lookup_texel_centre" | "dpsm_lookup_texel_centre_or_own" => {
+        "dpsm_lookup_texel_centre" => {
             cases.each(&POINTS, received, |p| (facing(p), LIGHT, SLACK));
             cases.each(&NORMALS, normals, |normal| (normal_at(normal), LIGHT, SLACK));
             cases.each(&LIGHTS, any, |light| (upright, light, SLACK));
-        }
-        "dpsm_lookup_along_centre" => {
-            cases.each(&POINTS, received, |p| (facing(p), 3.0, LIGHT, SLACK));
-            cases.each(&LIMITS, any, |most| (upright, most, LIGHT, SLACK));
-            cases.each(&LIGHTS, any, |light| (upright, 3.0, light, SLACK));
         }
         "dpsm_lookup_biased" => {
             cases.each(&POINTS, received, |p| (point(p), 0.01, LIGHT, SLACK));
@@ -99,23 +89,16 @@ pub fn add(function: &str, cases: &mut Cases) {
             });
             cases.each(&LIGHTS, any, |light| (3.72, light, SLACK.0));
         }
-        "dpsm_cube_lookup_along_centre" => {
-            cases.each(&POINTS, received, |p| (facing(p), 3.0, LIGHT, SLACK.0));
-            cases.each(&NORMALS, normals, |normal| (normal_at(normal), 10.0, LIGHT, SLACK.0));
-            cases.each(&LIMITS, any, |most| (upright, most, LIGHT, SLACK.0));
-            cases.each(&LIGHTS, any, |light| (upright, 3.0, light, SLACK.0));
+        "dpsm_cube_lookup_texel_centre" => {
+            cases.each(&POINTS, received, |p| (facing(p), LIGHT, SLACK.0));
+            cases.each(&NORMALS, normals, |normal| (normal_at(normal), LIGHT, SLACK.0));
+            cases.each(&LIGHTS, any, |light| (upright, light, SLACK.0));
         }
         "dpsm_cube_lookup_footprint" => {
             cases.each(&POINTS, received, |p| (facing(p), 0.5, LIGHT, SLACK.0));
             cases.each(&NORMALS, normals, |normal| (normal_at(normal), 1.0, LIGHT, SLACK.0));
             cases.each(&WINDOWS, any, |texels| (upright, texels, LIGHT, SLACK.0));
             cases.each(&LIGHTS, any, |light| (upright, 0.5, light, SLACK.0));
-        }
-        "dpsm_cube_lookup_without_normal" => {
-            cases.each(&POINTS, received, |p| (point(p), 0.5, 0.5, LIGHT, SLACK.0));
-            cases.each(&COSINES, any, |cosine| (ordinary, cosine, 0.5, LIGHT, SLACK.0));
-            cases.each(&WINDOWS, any, |texels| (ordinary, 0.5, texels, LIGHT, SLACK.0));
-            cases.each(&LIGHTS, any, |light| (ordinary, 0.5, 0.5, light, SLACK.0));
         }
         "dpsm_cube_lookup_rising" => {
             cases.each(&POINTS, received, |p| (point(p), 1.0, 0.01, LIGHT, SLACK.0));

@@ -303,13 +303,6 @@ values! {
         ("subnormal", 1e-40, "as nothing"),
         ("whole map", 1024.0, "counts as 90 degrees"),
     ]
-    LIMITS: f32, "Distances up to which a plane counts." [
-        ("nothing", 0.0, "the near sphere"),
-        ("near", 0.1, "the near sphere"),
-        ("own", 3.741_657_5, "the receiver's own distance"),
-        ("far", 10.0, "the far sphere"),
-        ("farthest", HALF, "the plane's own distance"),
-    ]
     ENDS: [[f32; 3]; 2], "Two ends of an edge." [
         ("ordinary", [[1.0, 2.0, 3.0], [2.0, 1.0, 3.5]], "an arc"),
         ("ends swapped", [[2.0, 1.0, 3.5], [1.0, 2.0, 3.0]], "the same arc, negated"),

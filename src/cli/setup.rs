@@ -202,10 +202,6 @@ enum BiasName {
     Footprint,
     /// The receiver's plane along the texel's centre; with `--filter hardware` as footprint
     TexelCentre,
-    /// The same, or the receiver's own distance where that is nearer
-    TexelCentreOrOwn,
-    /// As footprint, for receivers of unknown planes up to 84 degrees incidence
-    NoNormal,
 }
 
 /// The options that say how, by their names on the command line.
@@ -256,8 +252,6 @@ impl Names {
                 Bias::Constant(_) => BiasName::Constant,
                 Bias::Footprint => BiasName::Footprint,
                 Bias::TexelCentre => BiasName::TexelCentre,
-                Bias::TexelCentreOrOwn => BiasName::TexelCentreOrOwn,
-                Bias::WithoutNormal(_) => BiasName::NoNormal,
             }),
         }
     }
@@ -378,8 +372,6 @@ impl SetupArguments {
             (Name::Normal, None) => Bias::Normal,
             (Name::Footprint, None) => Bias::Footprint,
             (Name::TexelCentre, None) => Bias::TexelCentre,
-            (Name::TexelCentreOrOwn, None) => Bias::TexelCentreOrOwn,
-            (Name::NoNormal, None) => Bias::WITHOUT_NORMAL,
         })
     }
 

@@ -47,13 +47,9 @@ pub fn camera_uniform(
     let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
     words.extend(light_words(light));
     let settings = &frame.settings;
-    let cosine = match settings.bias_taken() {
-        Bias::WithoutNormal(cosine) => cosine,
-        _ => 0.0,
-    };
     let [_, tolerance] = settings.tolerances();
     let quantum = settings.format.quantum();
-    let biases = [frame.bias, quantum, tolerance, settings.window(), cosine];
+    let biases = [frame.bias, quantum, tolerance, settings.window()];
     words.extend(biases.map(f32::to_bits));
     words.extend(frame.filter_words());
     words.extend(view.shift.map(f32::to_bits));
@@ -77,10 +73,8 @@ pub fn constants(frame: &Frame) -> [(&'static str, f64); 2] {
         Bias::Constant(_) => 0,
         Bias::Footprint => 1,
         Bias::TexelCentre => 2,
-        Bias::WithoutNormal(_) => 3,
-        Bias::TexelCentreOrOwn => 4,
-        Bias::Plane => 5,
-        Bias::Normal => 6,
+        Bias::Plane => 3,
+        Bias::Normal => 4,
     };
     [("filtering", filter.into()), ("bias_kind", bias.into())]
 }

@@ -166,7 +166,7 @@ fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
         let at = bench.frame.lookup(p, normal);
         let (map, own) = bench.place(point);
         let (compared, uv) = match (bench.frame.settings.bias_taken(), point.normal) {
-            (Bias::TexelCentre | Bias::TexelCentreOrOwn, Some(normal)) => {
+            (Bias::TexelCentre, Some(normal)) => {
                 let centre = dpsm_texture_to_disk(at.coordinates.widen(), bench.light.guard);
                 let direction = bench.direction(centre, map).normalize();
                 let to_point = point.world - bench.origin;

@@ -27,9 +27,6 @@ pub enum FrameError {
         /// Far sphere's radius.
         far: f32,
     },
-    /// An incidence that is none.
-    #[error("the bias without a normal needs the cosine of an incidence from 0 to 1, not {0}")]
-    Cosine(f32),
     /// An exposure that leaves no light, or no number.
     #[error("--exposure {0} must be a finite number above 0; leave it out to have one chosen")]
     Exposure(f32),

@@ -2,13 +2,12 @@
 
 use super::{Bias, Filter, Frame, Method};
 use crate::scalar::bias::{
-    dpsm_bias_footprint, dpsm_bias_without_normal, dpsm_lookup_biased, dpsm_lookup_texel_centre,
-    dpsm_lookup_texel_centre_or_own, dpsm_receiver,
+    dpsm_bias_footprint, dpsm_lookup_biased, dpsm_lookup_texel_centre, dpsm_receiver,
 };
 use crate::scalar::cube::{
     dpsm_cube_depth, dpsm_cube_distance, dpsm_cube_face, dpsm_cube_lookup,
-    dpsm_cube_lookup_along_centre, dpsm_cube_lookup_footprint, dpsm_cube_lookup_without_normal,
-    dpsm_cube_receiver_depth, dpsm_cube_unview, dpsm_cube_view,
+    dpsm_cube_lookup_footprint, dpsm_cube_lookup_texel_centre, dpsm_cube_receiver_depth,
+    dpsm_cube_unview, dpsm_cube_view,
 };
 use crate::scalar::depth::{dpsm_distance, dpsm_receiver_depth};
 use crate::scalar::float::{Float, Vec2, Vec3};
@@ -101,16 +100,8 @@ impl Frame {
                     Bias::TexelCentre => {
                         return dpsm_lookup_texel_centre(p, receiver, light, quantum, tolerance);
                     }
-                    Bias::TexelCentreOrOwn => {
-                        return dpsm_lookup_texel_centre_or_own(
-                            p, receiver, light, quantum, tolerance,
-                        );
-                    }
                     Bias::Footprint | Bias::Plane | Bias::Normal => {
                         dpsm_bias_footprint(receiver, uv, texels, light)
-                    }
-                    Bias::WithoutNormal(cosine) => {
-                        dpsm_bias_without_normal(p.length(), cosine, uv, texels, light)
                     }
                 };
                 dpsm_lookup_biased(p, window, light, quantum, tolerance)
@@ -121,17 +112,9 @@ impl Frame {
                     let depth = dpsm_cube_receiver_depth(p, at.hemisphere, light, self.bias);
                     DpsmLookup { depth, ..at }
                 }
-                Bias::TexelCentre => {
-                    dpsm_cube_lookup_along_centre(p, receiver, light.far, light, quantum)
-                }
-                Bias::TexelCentreOrOwn => {
-                    dpsm_cube_lookup_along_centre(p, receiver, receiver.distance, light, quantum)
-                }
+                Bias::TexelCentre => dpsm_cube_lookup_texel_centre(p, receiver, light, quantum),
                 Bias::Footprint | Bias::Plane | Bias::Normal => {
                     dpsm_cube_lookup_footprint(p, receiver, texels, light, quantum)
-                }
-                Bias::WithoutNormal(cosine) => {
-                    dpsm_cube_lookup_without_normal(p, cosine, texels, light, quantum)
                 }
             },
         }

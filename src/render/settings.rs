@@ -128,16 +128,6 @@ pub enum Bias {
     /// The receiver's plane along the texel's centre; where 2 x 2 texels are compared with one
     /// depth, `Footprint`.
     TexelCentre,
-    /// The same, or the receiver's own distance where that is nearer: fewer creases shadow
-    /// themselves, and occluders closer than half a texel's slope are forgiven.
-    TexelCentreOrOwn,
-    /// `Footprint` for a receiver of unknown plane, whose incidence's cosine is at least this.
-    WithoutNormal(f32),
-}
-
-impl Bias {
-    /// `WithoutNormal` at the incidence beyond which a surface gets less than a tenth of the light.
-    pub const WITHOUT_NORMAL: Self = Self::WithoutNormal(0.1);
 }
 
 /// How the lookups of a receiver are averaged.
@@ -421,7 +411,7 @@ impl Settings {
             (Bias::Plane | Bias::Normal, _, _) if self.method.projection() == Projection::Cube => {
                 Bias::Footprint
             }
-            (Bias::TexelCentre | Bias::TexelCentreOrOwn, Sampling::Linear, _) => Bias::Footprint,
+            (Bias::TexelCentre, Sampling::Linear, _) => Bias::Footprint,
             (bias, _, _) => bias,
         }
     }

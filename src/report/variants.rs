@@ -190,8 +190,6 @@ pub fn described(choice: &Choice, frame: &Frame) -> Result<Variant, FrameError> 
             Bias::Constant(_) => "constant",
             Bias::Footprint => "footprint",
             Bias::TexelCentre => "texel-centre",
-            Bias::TexelCentreOrOwn => "texel-centre-or-own",
-            Bias::WithoutNormal(_) => "no-normal",
         }
         .into(),
         format: format_name(format).into(),

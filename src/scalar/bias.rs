@@ -123,18 +123,6 @@ pub fn dpsm_bias_footprint<T: Float>(
     dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light)
 }
 
-/// The footprint bias for a receiver without a normal: enough for every incidence whose cosine is
-/// at least the given one.
-pub fn dpsm_bias_without_normal<T: Float>(
-    distance: T,
-    cosine: T,
-    uv: Vec2<T>,
-    texels: T,
-    light: DpsmLight<T>,
-) -> T {
-    dpsm_bias_plane(cosine, distance, dpsm_bias_window(uv, texels, light), light)
-}
-
 /// The centre, on the disk, of the texel that holds a disk point.
 pub fn dpsm_texel_centre<T: Float>(uv: Vec2<T>, light: DpsmLight<T>) -> Vec2<T> {
     let st = dpsm_disk_to_texture(uv, light.guard);
@@ -152,36 +140,13 @@ pub fn dpsm_lookup_texel_centre<T: Float>(
     quantum: T,
     tolerance: T,
 ) -> DpsmLookup<T> {
-    dpsm_lookup_along_centre(p, receiver, light.far, light, quantum, tolerance)
-}
-
-/// The same, but of the receiver itself where that is nearer.
-pub fn dpsm_lookup_texel_centre_or_own<T: Float>(
-    p: Vec3<T>,
-    receiver: DpsmReceiver<T>,
-    light: DpsmLight<T>,
-    quantum: T,
-    tolerance: T,
-) -> DpsmLookup<T> {
-    dpsm_lookup_along_centre(p, receiver, receiver.distance, light, quantum, tolerance)
-}
-
-/// The same, of the plane up to the distance `limit`.
-pub fn dpsm_lookup_along_centre<T: Float>(
-    p: Vec3<T>,
-    receiver: DpsmReceiver<T>,
-    limit: T,
-    light: DpsmLight<T>,
-    quantum: T,
-    tolerance: T,
-) -> DpsmLookup<T> {
     let at = dpsm_lookup(p, light);
     let centre = dpsm_texel_centre(dpsm_project_own(p), light);
     let st = dpsm_disk_to_texture(centre, light.guard);
     let there = dpsm_receiver_distance(receiver, centre, at.hemisphere);
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
     let met = there > T::lit(DPSM_SMALLEST);
-    let compared = select(receiver.distance, there.min(limit), met);
+    let compared = select(receiver.distance, there.min(light.far), met);
     let depth = dpsm_depth(compared, light.near, light.far).clamp(T::lit(0.0), T::lit(1.0));
     DpsmLookup {
         coordinates: dpsm_light_coordinates(light, at.hemisphere, st),
@@ -219,21 +184,6 @@ pub fn dpsm_visibility_texel_centre<T: Float>(
     select(T::lit(0.0), lit, at.mapped)
 }
 
-/// The shadow test along the centre of the receiver's texel, of its plane or of itself: 1 lit, 0 in
-/// shadow.
-pub fn dpsm_visibility_texel_centre_or_own<T: Float>(
-    maps: &impl Maps<T>,
-    p: Vec3<T>,
-    receiver: DpsmReceiver<T>,
-    light: DpsmLight<T>,
-    quantum: T,
-    tolerance: T,
-) -> T {
-    let at = dpsm_lookup_texel_centre_or_own(p, receiver, light, quantum, tolerance);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth);
-    select(T::lit(0.0), lit, at.mapped)
-}
-
 /// The shadow test less the footprint bias of a window: 1 lit, 0 in shadow.
 pub fn dpsm_visibility_footprint<T: Float>(
     maps: &impl Maps<T>,
@@ -245,23 +195,6 @@ pub fn dpsm_visibility_footprint<T: Float>(
     tolerance: T,
 ) -> T {
     let window = dpsm_bias_footprint(receiver, dpsm_project_own(p), texels, light);
-    let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth);
-    select(T::lit(0.0), lit, at.mapped)
-}
-
-/// The shadow test without a normal, for incidences whose cosine is at least the given one.
-pub fn dpsm_visibility_without_normal<T: Float>(
-    maps: &impl Maps<T>,
-    p: Vec3<T>,
-    cosine: T,
-    light: DpsmLight<T>,
-    texels: T,
-    quantum: T,
-    tolerance: T,
-) -> T {
-    let uv = dpsm_project_own(p);
-    let window = dpsm_bias_without_normal(p.length(), cosine, uv, texels, light);
     let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
     let lit = maps.compare(at.coordinates, at.layer, at.depth);
     select(T::lit(0.0), lit, at.mapped)

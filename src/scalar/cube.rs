@@ -110,12 +110,10 @@ pub fn dpsm_cube_slack<T: Float>(z: T, light: DpsmLight<T>, quantum: T) -> T {
     quantum + steps * (light.far / (light.far - light.near))
 }
 
-/// The depth along the centre of the receiver's texel, of its plane up to the distance `limit`, less
-/// the slack.
-pub fn dpsm_cube_lookup_along_centre<T: Float>(
+/// The depth along the centre of the receiver's texel, of its plane, less the slack.
+pub fn dpsm_cube_lookup_texel_centre<T: Float>(
     p: Vec3<T>,
     receiver: DpsmReceiver<T>,
-    limit: T,
     light: DpsmLight<T>,
     quantum: T,
 ) -> DpsmLookup<T> {
@@ -128,7 +126,7 @@ pub fn dpsm_cube_lookup_along_centre<T: Float>(
     let facing = receiver.plane.xyz().dot(dpsm_cube_unview(direction, at.hemisphere));
     let leaned = facing.max(zero) + T::lit(DPSM_RECEIVER_ROUNDING) * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
-    let there = (receiver.plane.w / leaned).min(limit / l);
+    let there = (receiver.plane.w / leaned).min(light.far / l);
     let z = select(receiver.distance / l, there, facing > zero);
     DpsmLookup {
         coordinates: dpsm_disk_to_texture(centre, light.guard),
@@ -150,20 +148,6 @@ pub fn dpsm_cube_lookup_footprint<T: Float>(
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x.abs() + normal.y.abs());
     dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum)
-}
-
-/// The same without a normal, for incidences whose cosine is at least the given one.
-pub fn dpsm_cube_lookup_without_normal<T: Float>(
-    p: Vec3<T>,
-    cosine: T,
-    texels: T,
-    light: DpsmLight<T>,
-    quantum: T,
-) -> DpsmLookup<T> {
-    // the normal's part across the axis is at most 1 long, and may point to a corner
-    let side = texels * dpsm_texel_width(light.size, light.guard);
-    let rise = Vec2::splat(side).length();
-    dpsm_cube_lookup_rising(p, cosine * p.length(), rise, light, quantum)
 }
 
 /// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)

@@ -187,8 +187,8 @@ pub const DPSM_FILTER_OWN: f64 = 0.5;
 /// What a receiver at grazing incidence is to be moved by in addition, in texels.
 pub const DPSM_FILTER_GRAZING: f64 = 0.258;
 
-/// The smallest kernel's half-angle in texels: half a texel's diagonal.
-pub const DPSM_FILTER_SMALLEST: f64 = 0.7071068;
+/// The smallest kernel's half-angle in texels: half a texel's diagonal, rounded up.
+pub const DPSM_FILTER_SMALLEST: f64 = 0x16a09e8 as f64 / (1u64 << 25) as f64;
 
 /// The bias cone's least half-angle, as its tangent.
 pub const DPSM_FILTER_CONE: f64 = 0.1;

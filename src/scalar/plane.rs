@@ -11,8 +11,8 @@ use super::paraboloid::{DPSM_SMALLEST, dpsm_disk_to_texture, dpsm_texel_width};
 /// How far along its normal a receiver is moved for a single lookup: texels, times the sine.
 pub const DPSM_PLANE_SHIFT: f64 = 0.35;
 
-/// The same where no plane is compared: half a texel's diagonal.
-pub const DPSM_PLANE_DIAGONAL: f64 = 0.7071068;
+/// The same where no plane is compared: half a texel's diagonal, rounded up.
+pub const DPSM_PLANE_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 25) as f64;
 
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 pub const DPSM_PLANE_OWN: f64 = 0.3;
@@ -21,7 +21,7 @@ pub const DPSM_PLANE_OWN: f64 = 0.3;
 pub const DPSM_PLANE_ROUNDING: f64 = 1.0 / 65536.0;
 
 /// What a stored distance is to be taken for: 32 eps more.
-pub const DPSM_PLANE_REACH: f64 = 1.000003814697265625;
+pub const DPSM_PLANE_REACH: f64 = 1.0 + 1.0 / (1u64 << 18) as f64;
 
 /// A receiver in its map, moved along its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]

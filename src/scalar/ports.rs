@@ -280,16 +280,14 @@ ports! {
     visibility { dpsm_lookup, dpsm_receiver_vertex }
     bias {
         dpsm_receiver, dpsm_receiver_cosine, dpsm_receiver_distance, dpsm_bias_slack,
-        dpsm_bias_window, dpsm_bias_plane, dpsm_bias_footprint, dpsm_bias_without_normal, dpsm_texel_centre,
-        dpsm_lookup_texel_centre, dpsm_lookup_texel_centre_or_own, dpsm_lookup_along_centre,
-        dpsm_lookup_biased,
+        dpsm_bias_window, dpsm_bias_plane, dpsm_bias_footprint, dpsm_texel_centre,
+        dpsm_lookup_texel_centre, dpsm_lookup_biased,
     }
     plane { dpsm_plane, dpsm_plane_four, dpsm_plane_share, dpsm_plane_depths }
     cube {
         dpsm_cube_face, dpsm_cube_view, dpsm_cube_unview, dpsm_cube_guard, dpsm_cube_vertex,
         dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_slack,
-        dpsm_cube_lookup_along_centre, dpsm_cube_lookup_footprint,
-        dpsm_cube_lookup_without_normal, dpsm_cube_lookup_rising,
+        dpsm_cube_lookup_texel_centre, dpsm_cube_lookup_footprint, dpsm_cube_lookup_rising,
         dpsm_cube_direction, dpsm_cube_distance, dpsm_cube_outside,
     }
     kernel {

@@ -53,9 +53,7 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         "dpsm_lookup" => lookup(0.0, 1.0),
         "dpsm_lookup_texel_centre" | "dpsm_filter_lookup" => lookup(-1.0, 1.0),
         // the slack grows with the receiver's distance, beyond far too
-        "dpsm_lookup_texel_centre_or_own" | "dpsm_lookup_along_centre" | "dpsm_lookup_biased" => {
-            lookup(f64::MIN, 1.0)
-        }
+        "dpsm_lookup_biased" => lookup(f64::MIN, 1.0),
         "dpsm_cube_lookup" => lookup(0.0, 5.0),
         name if name.starts_with("dpsm_cube_lookup_") => lookup(-1.0, 5.0),
         "dpsm_cube_face" => between(0, 0.0, 5.0),
@@ -68,7 +66,6 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         | "dpsm_cube_slack"
         | "dpsm_bias_plane"
         | "dpsm_bias_footprint"
-        | "dpsm_bias_without_normal"
         | "dpsm_kernel_tangent"
         | "dpsm_triangle_distance"
         | "dpsm_triangle_behind"

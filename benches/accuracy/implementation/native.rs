@@ -4,7 +4,8 @@
 
 use naga_rust_embed::rt::{Scalar, Vec2, Vec3, Vec4};
 
-#[allow(clippy::too_many_arguments)] // constructors take all members
+// constructors take all members, and constants stand as WGSL has them
+#[allow(clippy::approx_constant, clippy::too_many_arguments)]
 mod wgsl {
     // what naga-rust-embed's runtime lacks, found where its own methods are looked up
     use super::{FirstLeadingBit as _, SquareRoot as _, Swizzle as _};

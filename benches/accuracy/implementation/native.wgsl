@@ -1129,21 +1129,6 @@ fn dpsm_bias_footprint(
     return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
 }
 
-/// The footprint bias for a receiver without a normal: enough for every incidence whose cosine is
-/// at least the given one. It costs the steepest one's bias everywhere, and steeper receivers
-/// shadow themselves.
-///
-/// Domain and bound: as for dpsm_bias_footprint.
-fn dpsm_bias_without_normal(
-    distance: f32,
-    cosine: f32,
-    uv: vec2<f32>,
-    texels: f32,
-    light: DpsmLight,
-) -> f32 {
-    return dpsm_bias_plane(cosine, distance, dpsm_bias_window(uv, texels, light), light);
-}
-
 /// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
 /// map. Looked up at dpsm_disk_to_texture of it, that texel is the one that is read, whatever the
 /// rounding at its borders.
@@ -1169,48 +1154,20 @@ fn dpsm_lookup_texel_centre(
     quantum: f32,
     tolerance: f32,
 ) -> DpsmLookup {
-    return dpsm_lookup_along_centre(p, receiver, light.far, light, quantum, tolerance);
-}
-
-/// The same, but of the receiver itself where that is nearer: fewer creases shadow themselves, and
-/// an occluder is forgiven that is nearer to the plane than the plane falls off towards the centre.
-///
-/// Domain: as dpsm_lookup_texel_centre.
-fn dpsm_lookup_texel_centre_or_own(
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    light: DpsmLight,
-    quantum: f32,
-    tolerance: f32,
-) -> DpsmLookup {
-    return dpsm_lookup_along_centre(p, receiver, receiver.distance, light, quantum, tolerance);
-}
-
-/// The same, of the plane up to the distance `limit`.
-///
-/// Domain: as dpsm_lookup_texel_centre, 0 <= limit <= 2^62.
-fn dpsm_lookup_along_centre(
-    p: vec3<f32>,
-    receiver: DpsmReceiver,
-    limit: f32,
-    light: DpsmLight,
-    quantum: f32,
-    tolerance: f32,
-) -> DpsmLookup {
     var at = dpsm_lookup(p, light);
     let centre = dpsm_texel_centre(dpsm_project_own(p), light);
     let st = dpsm_disk_to_texture(centre, light.guard);
     at.coordinates = dpsm_light_coordinates(light, at.hemisphere, st);
     let there = dpsm_receiver_distance(receiver, centre, at.hemisphere);
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
-    let compared = select(receiver.distance, min(there, limit), there > DPSM_SMALLEST);
+    let compared = select(receiver.distance, min(there, light.far), there > DPSM_SMALLEST);
     let depth = clamp(dpsm_depth(compared, light.near, light.far), 0.0, 1.0);
     at.depth = depth - dpsm_bias_slack(compared, light, quantum, tolerance);
     return at;
 }
 
 /// Where a receiver looks, and the depth that it compares, less a window's bias
-/// (dpsm_bias_footprint or dpsm_bias_without_normal) and the slack.
+/// (dpsm_bias_footprint) and the slack.
 ///
 /// Domain: as for dpsm_lookup_texel_centre. A lit plane is never shadowed by itself at any texel of
 /// the window.
@@ -1230,8 +1187,8 @@ fn dpsm_lookup_biased(
 
 // dpsm::plane
 
-/// The same where no plane is compared: half a texel's diagonal.
-const DPSM_PLANE_DIAGONAL: f32 = 0.7071068;
+/// The same where no plane is compared: half a texel's diagonal, rounded up.
+const DPSM_PLANE_DIAGONAL: f32 = 0x1.6a09e8p-1;
 
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
@@ -1241,7 +1198,7 @@ const DPSM_PLANE_OWN: f32 = 0.3;
 const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
 
 /// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 1.000003814697265625;
+const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -1489,15 +1446,13 @@ fn dpsm_cube_slack(z: f32, light: DpsmLight, quantum: f32) -> f32 {
     return quantum + steps * (light.far / (light.far - light.near));
 }
 
-/// dpsm_lookup_along_centre for a cube: the depth along the centre of the receiver's texel, of its
-/// plane up to the distance `limit`, less the slack.
+/// dpsm_lookup_texel_centre for a cube: the depth along the centre of the receiver's texel, of its
+/// plane, less the slack.
 ///
-/// limit: far, or the receiver's own distance as in dpsm_lookup_texel_centre_or_own.
 /// Domain: as dpsm_cube_lookup, |p| <= 2^62. A lit plane is never shadowed by itself.
-fn dpsm_cube_lookup_along_centre(
+fn dpsm_cube_lookup_texel_centre(
     p: vec3<f32>,
     receiver: DpsmReceiver,
-    limit: f32,
     light: DpsmLight,
     quantum: f32,
 ) -> DpsmLookup {
@@ -1510,7 +1465,7 @@ fn dpsm_cube_lookup_along_centre(
     let facing = dot(receiver.plane.xyz, dpsm_cube_unview(direction, at.hemisphere));
     let leaned = max(facing, 0.0) + DPSM_RECEIVER_ROUNDING * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
-    let there = min(receiver.plane.w / leaned, limit / l);
+    let there = min(receiver.plane.w / leaned, light.far / l);
     let z = select(receiver.distance / l, there, facing > 0.0);
     at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
     return at;
@@ -1519,7 +1474,7 @@ fn dpsm_cube_lookup_along_centre(
 /// The lookup less the footprint bias of a square window, whose half side is `texels`, and the
 /// slack. Along a face's axis a plane is at h / (n . (x, y, 1)), so it is nearest in a corner.
 ///
-/// Domain: as dpsm_cube_lookup_along_centre, texels >= 0. A lit plane is never shadowed by itself
+/// Domain: as dpsm_cube_lookup_texel_centre, texels >= 0. A lit plane is never shadowed by itself
 /// at any texel of the window.
 fn dpsm_cube_lookup_footprint(
     p: vec3<f32>,
@@ -1532,22 +1487,6 @@ fn dpsm_cube_lookup_footprint(
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x + normal.y);
     return dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum);
-}
-
-/// The same without a normal, for incidences whose cosine is at least the given one.
-///
-/// Domain: as dpsm_cube_lookup_footprint, 0 <= cosine <= 1.
-fn dpsm_cube_lookup_without_normal(
-    p: vec3<f32>,
-    cosine: f32,
-    texels: f32,
-    light: DpsmLight,
-    quantum: f32,
-) -> DpsmLookup {
-    // the normal's part across the axis is at most 1 long, and may point to a corner
-    let side = texels * dpsm_texel_width(light.size, light.guard);
-    let rise = length(vec2<f32>(side));
-    return dpsm_cube_lookup_rising(p, cosine * length(p), rise, light, quantum);
 }
 
 /// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
@@ -1894,8 +1833,8 @@ const DPSM_FILTER_OWN: f32 = 0.5;
 /// is more than the shift, rounded up.
 const DPSM_FILTER_GRAZING: f32 = 0.258;
 
-/// The smallest kernel's half-angle in texels: half a texel's diagonal.
-const DPSM_FILTER_SMALLEST: f32 = 0.7071068;
+/// The smallest kernel's half-angle in texels: half a texel's diagonal, rounded up.
+const DPSM_FILTER_SMALLEST: f32 = 0x1.6a09e8p-1;
 
 /// The bias cone's least half-angle, as its tangent; a blocker beside the receiver's direction must
 /// lie within it.

@@ -443,30 +443,11 @@ bias {
                 && light(i, 8).inside()
         },
         none;
-    dpsm_bias_without_normal Interval
-        |i| {
-            within(&i[..1], 0.0, two(62))
-                && within(&i[1..2], 0.0, 1.0)
-                && largest(&i[2..4]) <= two(29)
-                && within(&i[4..5], 0.0, two(24))
-                && light(i, 5).inside()
-        },
-        none;
     dpsm_texel_centre Absolute
         |i| largest(&i[..2]) <= two(62) && light(i, 2).inside() && i[17] <= two(20) && i[17].fract() == 0.0,
         |i, r, a| absolute(r, a, 6.0, 1.0 + light(i, 2).guard());
     dpsm_lookup_texel_centre Interval
         |i| point(&i[..3], -51, 61) && receiver(&i[3..8]) && light(i, 8).inside(), none;
-    dpsm_lookup_texel_centre_or_own Interval
-        |i| point(&i[..3], -51, 61) && receiver(&i[3..8]) && light(i, 8).inside(), none;
-    dpsm_lookup_along_centre Interval
-        |i| {
-            point(&i[..3], -51, 61)
-                && receiver(&i[3..8])
-                && within(&i[8..9], 0.0, two(62))
-                && light(i, 9).inside()
-        },
-        none;
     dpsm_lookup_biased Interval |i| point(&i[..3], -51, 61) && light(i, 4).inside(), none;
 }
 plane {
@@ -530,28 +511,14 @@ cube {
     dpsm_cube_slack Relative
         |i| light(i, 1).inside() && within(&i[..1], i[4], two(62)) && within(&i[25..], 0.0, 1.0),
         |_, r, a| relative(r, a, 11.0);
-    dpsm_cube_lookup_along_centre Interval
-        |i| {
-            point(&i[..3], -51, 61)
-                && receiver(&i[3..8])
-                && within(&i[8..9], 0.0, two(62))
-                && light(i, 9).inside()
-        },
-        none;
+    dpsm_cube_lookup_texel_centre Interval
+        |i| point(&i[..3], -51, 61) && receiver(&i[3..8]) && light(i, 8).inside(), none;
     dpsm_cube_lookup_footprint Interval
         |i| {
             point(&i[..3], -51, 61)
                 && receiver(&i[3..8])
                 && within(&i[8..9], 0.0, two(24))
                 && light(i, 9).inside()
-        },
-        none;
-    dpsm_cube_lookup_without_normal Interval
-        |i| {
-            point(&i[..3], -51, 61)
-                && within(&i[3..4], 0.0, 1.0)
-                && within(&i[4..5], 0.0, two(24))
-                && light(i, 5).inside()
         },
         none;
     dpsm_cube_lookup_rising Interval
