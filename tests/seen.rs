@@ -275,7 +275,7 @@ fn every_pixel_of_a_picture_is_judged() {
     let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
     let bench = Bench::new(&frame, &maps, &truth);
     let seen = bench.points_of_grid([40, 30]);
-    let errors = errors_of_image(&bench, &seen, || ());
+    let errors = errors_of_image(&bench, &seen, 40, || ());
     let error = picture_error(&errors, 40, 0.5);
     // the camera looks straight down from 5, so a part of the shadow shows beside the cover
     assert_eq!((error.size, error.pixels), ([40, 30], 1200));
@@ -283,4 +283,86 @@ fn every_pixel_of_a_picture_is_judged() {
     assert!(dark > 10, "{dark} pixels");
     assert_eq!((error.wrong, error.largest_patch, error.dots), (dark, dark, 0));
     assert_eq!(bench.points_of_image().len(), 64 * 48);
+}
+
+#[test]
+fn sides_turned_away_from_the_light_are_right_whatever_the_maps_say() {
+    // the light at the origin, above the floor; the camera at 5 above both
+    let frame = frame_of(vec![square("ceiling", 0.0, 1.0, 50.0)], settings());
+    let truth = truth_of(&frame);
+    let mut maps = DepthMaps::empty(SIZE, 2, Sampling::Nearest);
+    for depth in [0.0, 1.0] {
+        maps.depths.fill(depth);
+        let bench = Bench::new(&frame, &maps, &truth);
+        let seen = bench.points_of_grid([40, 30]);
+        let errors = errors_of_image(&bench, &seen, 40, || ());
+        assert_eq!((picture_error(&errors, 40, 0.5).wrong, errors.len()), (0, 1200), "{depth}");
+    }
+}
+
+#[test]
+fn kernels_are_judged_with_the_noise_of_their_pixels() {
+    let cover = square("cover", 1.0, -1.0, 0.5);
+    let filter = Filter::Disk(Taps { count: 4, kernel: Kernel::Tangent(0.2) });
+    let frame =
+        frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], Settings { filter, ..settings() });
+    let truth = truth_of(&frame);
+    let maps = dpsm::cpu::make_maps(&frame).unwrap();
+    let bench = Bench::new(&frame, &maps, &truth);
+    // every pixel sees the same point of the penumbra
+    let point = bench.point_at(dvec3(1.0, -2.0, 0.1), None);
+    let penumbra = vec![Some(point); 64];
+    let errors = errors_of_image(&bench, &penumbra, 8, || ());
+    let values: std::collections::HashSet<u64> =
+        errors.iter().flatten().map(|error| error.to_bits()).collect();
+    assert!(values.len() > 1, "{values:?}");
+}
+
+/// A box around (0, y, 0), seen from outside or from inside.
+fn solid(y: f32, half: f32, outside: bool) -> Mesh {
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { half } else { -half };
+        vec3(side(0), y + side(1), side(2))
+    };
+    let faces: [[u32; 4]; 6] =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let turned = |[a, b, c]: [u32; 3]| if outside { [a, b, c] } else { [c, b, a] };
+    Mesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: faces.into_iter().flat_map(halves).map(turned).collect(),
+        normals: vec![Vec3::Y; 8],
+        ..square("solid", 0.0, 0.0, 1.0)
+    }
+}
+
+#[test]
+fn sides_of_solids_are_turned_away_and_no_others() {
+    // the light is at the origin; top, bottom and side of a box below it
+    let points = [dvec3(0.1, -1.5, 0.0), dvec3(0.1, -2.5, 0.0), dvec3(0.5, -2.2, 0.1)];
+    let of = |mesh: Mesh, at: &[DVec3]| {
+        let frame = frame_of(vec![mesh], settings());
+        let (truth, maps) = (truth_of(&frame), DepthMaps::empty(SIZE, 2, Sampling::Nearest));
+        let bench = Bench::new(&frame, &maps, &truth);
+        let on = |p: &DVec3| {
+            let on_it = |t: &u32| {
+                let [a, b, c] = frame.triangles[*t as usize]
+                    .map(|i| frame.vertices[i as usize].position.as_dvec3());
+                (b - a).cross(c - a).dot(*p - a).abs() < 1e-6
+            };
+            let triangle = (0..frame.triangles.len() as u32).find(on_it);
+            Point { triangle, ..bench.point_at(*p, None) }
+        };
+        turned_away(&bench, &at.iter().map(on).collect::<Vec<_>>())
+    };
+    assert_eq!(of(solid(-2.0, 0.5, true), &points), [false, true, true]);
+    // inside out, or open: which side is seen is not known
+    assert_eq!(of(solid(-2.0, 0.5, false), &points), [false; 3]);
+    let mut open = solid(-2.0, 0.5, true);
+    open.triangles.pop();
+    assert_eq!(of(open, &points), [false; 3]);
+    // a room's walls all face a light in it, whichever way they are wound
+    let walls = [dvec3(0.1, -1.0, 0.0), dvec3(1.0, 0.5, 0.1)];
+    assert_eq!(of(solid(0.0, 1.0, false), &walls), [false; 2]);
+    assert_eq!(of(solid(0.0, 1.0, true), &walls), [false; 2]);
 }

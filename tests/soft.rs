@@ -70,6 +70,23 @@ fn what_lies_below_the_receivers_plane_is_no_shadow() {
 }
 
 #[test]
+fn what_lies_inside_the_light_casts_no_shadow() {
+    // a plate that cuts the light in two, and one just in front of it that hides a part of it
+    let found = [0.2, 0.26].map(|below: f32| {
+        let plate = square("plate", 0.0, -below, 0.1);
+        let frame = frame_of(vec![square("floor", 0.0, -2.0, 2.0), plate], soft());
+        with(&frame, 1.0, |bench| {
+            let point = bench.point_at(dvec3(0.3, -2.0, 0.1), None);
+            soft_coverage(bench, &point, RADIUS.into())
+        })
+    });
+    assert_eq!(found[0], 1.0);
+    // 0.2 x 0.2 of the light's disk, 2 / 1.74 times as large there
+    let hidden = (0.2 * 2.0 / 1.74_f64).powi(2) / (PI * f64::from(RADIUS * RADIUS));
+    assert!((1.0 - found[1] - hidden).abs() <= 12.0 / 128.0, "{} for {hidden}", 1.0 - found[1]);
+}
+
+#[test]
 fn kernels_stand_for_a_light_as_wide_as_they_are_at_the_receiver() {
     let disk = |kernel| Filter::Disk(Taps { count: 16, kernel });
     let radius = |filter| {

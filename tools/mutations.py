@@ -1347,7 +1347,23 @@ MUTATIONS = [
 ]
 
 
-SCENE = ["--no-default-features", "--features", "scene"]
+SCENE = ["--no-default-features", "--features", "scene"    ("src/measure/soft.rs", "sees(from, point.world, point.triangle, inside)", "sees(from, point.world, point.triangle, 0.0)",
+     "soft", "what_lies_inside_the_light_casts_no_shadow"),
+    ("src/measure/soft.rs", "inward + (inward * inward", "radius + inward + (inward * inward",
+     "soft", "what_lies_inside_the_light_casts_no_shadow"),
+    ("src/measure/picture.rs", "if bench.shows_unlit_side(point) {", "if bench.shows_unlit_side(point) || true {",
+     "seen", "every_pixel_of_a_picture_is_judged"),
+    ("src/measure/picture.rs", "if bench.shows_unlit_side(point) {", "if false {",
+     "seen", "sides_turned_away_from_the_light_are_right_whatever_the_maps_say"),
+    ("src/measure/picture.rs", "rotation_at(pixel, shift)", "rotation_at([0, 0], shift)",
+     "seen", "kernels_are_judged_with_the_noise_of_their_pixels"),
+    ("src/measure/solid.rs", "corners.is_empty() || !is_closed(&corners)", "corners.is_empty()",
+     "seen", "sides_of_solids_are_turned_away_and_no_others"),
+    ("src/measure/solid.rs", "true => filled.abs() < WHOLE,", "true => true,",
+     "seen", "sides_of_solids_are_turned_away_and_no_others"),
+    ("src/measure/solid.rs", "false => (filled + 1.0).abs() < WHOLE,", "false => true,",
+     "seen", "sides_of_solids_are_turned_away_and_no_others"),
+]
 # the features that a test file needs; none where it is not listed
 FEATURES = {
     "accuracy": [], "adapter": [], "casting": [], "maps": [], "cube": [], "render": [], "light": [],

@@ -65,7 +65,7 @@ fn picture(bench: &Bench<'_>, width: Option<u32>) -> Option<PictureError> {
     let size = [width, width * IMAGE[1] / IMAGE[0]];
     let seen = bench.points_of_grid(size);
     let progress = bar("pixels", seen.len());
-    let errors = measure::errors_of_image(bench, &seen, || progress.inc(1));
+    let errors = measure::errors_of_image(bench, &seen, width, || progress.inc(1));
     progress.finish_and_clear();
     (!errors.is_empty()).then(|| measure::picture_error(&errors, width, threshold))
 }

@@ -14,6 +14,7 @@ mod seen;
 mod shadow;
 mod silhouette;
 mod soft;
+mod solid;
 mod surface;
 
 pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straight, left_out};
@@ -25,6 +26,7 @@ pub use seen::{SeenError, seen_error, surroundings_of};
 pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};
 pub use soft::{SoftError, SoftFigures, at_crease, soft_coverage, soft_error};
+pub use solid::turned_away;
 pub use surface::{Surroundings, surroundings};
 
 use glam::{DMat3, DVec3};

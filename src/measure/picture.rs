@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Bench, Point};
+use crate::render::{Filter, rotation_at};
 
 /// How far off a pixel's visibility is at the least where it counts as wrong, if the truth is 0 or 1.
 pub const WRONG_HARD: f64 = 0.5;
@@ -98,17 +99,57 @@ fn around(at: usize, width: usize) -> impl Iterator<Item = usize> {
         .filter(move |next| *next != at)
 }
 
-/// Visibility less truth at what the camera sees through each pixel of the frame's image, row by row
-/// from the top.
+/// Visibility less truth at what the camera sees through each pixel of a picture, row by row from the
+/// top, `width` of them in each: the mean over the frame's samples, each with its own noise. None is
+/// wrong where the camera sees the side that is turned away from the light: shading leaves it dark.
 pub fn errors_of_image(
     bench: &Bench<'_>,
     seen: &[Option<Point>],
+    width: u32,
     pixel_done: impl Fn() + Sync,
 ) -> Vec<Option<f64>> {
-    let error = |point: &Point| f64::from(bench.visibility(point)) - bench.true_visibility(point);
-    let pixels = seen.par_iter().map(|point| {
+    let error = |index: usize, point: &Point| {
+        if bench.shows_unlit_side(point) {
+            return 0.0;
+        }
+        let pixel = [index as u32 % width.max(1), index as u32 / width.max(1)];
+        f64::from(bench.visibility_at(point, pixel)) - bench.true_visibility(point)
+    };
+    let pixels = seen.par_iter().enumerate().map(|(index, point)| {
         pixel_done();
-        point.as_ref().map(error)
+        point.as_ref().map(|point| error(index, point))
     });
     pixels.collect()
+}
+
+impl Bench<'_> {
+    /// The visibility of a point as a pixel shows it: the mean over the samples, each with a kernel
+    /// turned by the noise of its own place.
+    fn visibility_at(&self, point: &Point, pixel: [u32; 2]) -> f32 {
+        let settings = &self.frame.settings;
+        if matches!(settings.filter, Filter::Single | Filter::Naive(_)) {
+            return self.visibility(point);
+        }
+        let (p, normal) = self.receiver(point);
+        let places = settings.places();
+        let of = |place: &[f32; 2]| {
+            let shift = self.frame.view.sampled(*place, settings.image).shift;
+            self.frame.visibility_turned(self.maps, p, normal, rotation_at(pixel, shift))
+        };
+        places.iter().map(of).sum::<f32>() / places.len() as f32
+    }
+
+    /// True where the camera sees the side of a point's surface that is turned away from the light,
+    /// by the triangle's plane and by the normals of its corners, which shading interpolates.
+    fn shows_unlit_side(&self, point: &Point) -> bool {
+        let (Some(plane), Some(triangle)) = (point.normal, point.triangle) else { return false };
+        let eye = self.frame.view.eye.as_dvec3() - point.world;
+        let seen = plane * plane.dot(eye).signum();
+        let light = self.origin - point.world;
+        let corners = self.frame.triangles.get(triangle as usize).into_iter().flatten();
+        let mut normals =
+            corners.map(|corner| self.frame.vertices[*corner as usize].normal.as_dvec3());
+        seen.dot(light) < 0.0
+            && normals.all(|normal| (normal * normal.dot(seen).signum()).dot(light) < 0.0)
+    }
 }

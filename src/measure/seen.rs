@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Bench, Point, Surroundings, surroundings};
+use super::{Bench, Point, Surroundings, surroundings, turned_away};
 
 /// Acne, leaks, and all that is wrong, against the hard truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -12,6 +12,9 @@ pub struct SeenError {
     pub points: usize,
     /// Points whose visibility, at least 1/2 or not, disagrees with the truth.
     pub wrong: usize,
+    /// Of these, points on sides of solids that are turned away from the light ([`turned_away`]):
+    /// shading leaves them dark.
+    pub wrong_turned_away: usize,
     /// Root of the mean squared difference of the visibility from the truth, 0 or 1.
     pub rmse: f64,
     /// Points that are smoothly lit.
@@ -74,11 +77,15 @@ pub fn seen_error(
         points.par_iter().map(|point| f64::from(bench.visibility(point))).collect();
     let mut error = SeenError { points: points.len(), ..SeenError::default() };
     let (mut squares, mut dark, mut light) = (0.0, 0.0, 0.0);
-    for (visibility, (lit, surroundings)) in seen.into_iter().zip(surroundings) {
+    let turned = turned_away(bench, points);
+    for ((visibility, turned), (lit, surroundings)) in
+        seen.into_iter().zip(turned).zip(surroundings)
+    {
         let off = visibility - f64::from(u8::from(*lit));
         squares += off * off;
         let wrong = usize::from((visibility >= 0.5) != *lit);
         error.wrong += wrong;
+        error.wrong_turned_away += if turned { wrong } else { 0 };
         match surroundings {
             Surroundings::SmoothlyLit => {
                 error.smoothly_lit += 1;

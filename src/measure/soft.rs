@@ -6,7 +6,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Bench, Point};
+use super::{Bench, Point, turned_away};
 use crate::render::Filter;
 use crate::truth::Ray;
 
@@ -46,9 +46,12 @@ pub struct SoftError {
     pub radius: f64,
     /// All points.
     pub all: SoftFigures,
-    /// Points with a crease within that radius.
+    /// All but those on sides of solids that are turned away from the light ([`turned_away`]), which
+    /// shading leaves dark.
+    pub facing: SoftFigures,
+    /// Of these, points with a crease within that radius.
     pub creases: SoftFigures,
-    /// The others.
+    /// The others of these.
     pub elsewhere: SoftFigures,
 }
 
@@ -80,7 +83,8 @@ impl Bench<'_> {
 
 /// The share of a spherical light that a point sees: rays from Vogel's spiral over the disk through
 /// the light's centre that faces the point. What of it lies below the receiver's plane, on the other
-/// side than the centre, is left out: shading, not shadow, dims the light there.
+/// side than the centre, is left out: shading, not shadow, dims the light there. What lies inside the
+/// sphere casts no shadow: a lamp shines out of its fitting.
 pub fn soft_coverage(bench: &Bench<'_>, point: &Point, radius: f64) -> f64 {
     let axis = (point.world - bench.origin).normalize_or_zero();
     let (side, other) = axis.any_orthonormal_pair();
@@ -94,10 +98,17 @@ pub fn soft_coverage(bench: &Bench<'_>, point: &Point, radius: f64) -> f64 {
         let from = bench.origin + (side * cos + other * sin) * ring;
         if height(from) * centre >= 0.0 {
             taken += 1;
-            lit += u32::from(bench.truth.sees(from, point.world, point.triangle, 0.0));
+            let inside = within_sphere(from - bench.origin, point.world - from, radius);
+            lit += u32::from(bench.truth.sees(from, point.world, point.triangle, inside));
         }
     }
     f64::from(lit) / f64::from(taken.max(1))
+}
+
+/// How far a ray from a place in a sphere around the origin runs inside it.
+fn within_sphere(from: DVec3, along: DVec3, radius: f64) -> f64 {
+    let inward = -from.dot(along.normalize_or_zero());
+    inward + (inward * inward + radius * radius - from.length_squared()).max(0.0).sqrt()
 }
 
 /// True where a crease is within a radius: a triangle that is connected with the point's there and
@@ -129,22 +140,24 @@ pub fn soft_error(
     points: &[Point],
     point_done: impl Fn() + Sync,
 ) -> Option<SoftError> {
-    let judge = |point: &Point| {
+    let judge = |(point, turned): (&Point, bool)| {
         let radius = bench.light_radius(point)?;
         let truth = bench.true_visibility(point);
         let visibility = f64::from(bench.visibility(point));
         let crease = at_crease(bench, point, radius);
         point_done();
-        Some(Judged { radius, truth, visibility, crease })
+        Some(Judged { radius, truth, visibility, crease, turned })
     };
-    let judged: Option<Vec<Judged>> = points.par_iter().map(judge).collect();
+    let judged: Option<Vec<Judged>> =
+        points.par_iter().zip(turned_away(bench, points)).map(judge).collect();
     let judged = judged.filter(|judged| !judged.is_empty())?;
     let radii: f64 = judged.iter().map(|judged| judged.radius).sum();
     Some(SoftError {
         radius: radii / judged.len() as f64,
         all: figures(&judged, |_| true),
-        creases: figures(&judged, |judged| judged.crease),
-        elsewhere: figures(&judged, |judged| !judged.crease),
+        facing: figures(&judged, |judged| !judged.turned),
+        creases: figures(&judged, |judged| !judged.turned && judged.crease),
+        elsewhere: figures(&judged, |judged| !judged.turned && !judged.crease),
     })
 }
 
@@ -154,6 +167,7 @@ struct Judged {
     truth: f64,
     visibility: f64,
     crease: bool,
+    turned: bool,
 }
 
 fn figures(judged: &[Judged], wanted: impl Fn(&Judged) -> bool) -> SoftFigures {

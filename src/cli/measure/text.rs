@@ -39,11 +39,13 @@ fn seen(report: &Report, text: &mut String) {
     let _ = writeln!(
         text,
         "\nwrong {:.3}% of {} points, nothing excused; RMSE {:.4}\n  \
+         {:.3}% on sides of solids turned away from the light, which shading leaves dark\n  \
          acne {:.3}% of {} smoothly lit points, mean darkness {:.3}%\n  \
          leak {:.3}% of {} points deep in shadow, mean light {:.3}%",
         100.0 * s.wrong_share(),
         s.points,
         s.rmse,
+        share(s.wrong_turned_away, s.points),
         100.0 * s.acne_share(),
         s.smoothly_lit,
         100.0 * s.acne_mean,
@@ -69,9 +71,10 @@ fn seen(report: &Report, text: &mut String) {
 
 /// Against rays to a spherical light.
 fn soft(report: &Report, text: &mut String) {
-    let Some(SoftError { radius, all, creases, elsewhere }) = &report.soft else { return };
+    let Some(SoftError { radius, all, facing, creases, elsewhere }) = &report.soft else { return };
     let _ = writeln!(text, "soft, against rays to a light of radius {radius:.4}:");
-    let rows = [("all", all), ("at creases", creases), ("elsewhere", elsewhere)];
+    let rows =
+        [("all", all), ("facing", facing), ("at creases", creases), ("elsewhere", elsewhere)];
     for (name, figures) in rows {
         let _ = writeln!(
             text,
