@@ -178,7 +178,11 @@ fn bad_settings_are_refused() {
         &with(&["--filter", "hard", "--bias", "plane"]),
         &["--bias plane is not for --filter hard", "--filter single"],
     );
-    refused("filter-taps", &with(&["--taps", "8"]), &["--filter single takes no --taps"]);
+    refused(
+        "filter-taps",
+        &with(&["--filter", "single", "--taps", "8"]),
+        &["--filter single takes no --taps"],
+    );
     refused(
         "filter-no-taps",
         &with(&["--filter", "disk", "--taps", "0"]),

@@ -6,6 +6,7 @@
 #[path = "common/scenes.rs"]
 mod scenes;
 
+use dpsm::cpu;
 use dpsm::measure::*;
 use dpsm::render::{Filter, Frame, Kernel, Settings, Taps};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
@@ -307,7 +308,7 @@ fn kernels_are_judged_with_the_noise_of_their_pixels() {
     let frame =
         frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], Settings { filter, ..settings() });
     let truth = truth_of(&frame);
-    let maps = dpsm::cpu::make_maps(&frame).unwrap();
+    let maps = cpu::make_maps(&frame).unwrap();
     let bench = Bench::new(&frame, &maps, &truth);
     // every pixel sees the same point of the penumbra
     let point = bench.point_at(dvec3(1.0, -2.0, 0.1), None);
@@ -365,4 +366,22 @@ fn sides_of_solids_are_turned_away_and_no_others() {
     let walls = [dvec3(0.1, -1.0, 0.0), dvec3(1.0, 0.5, 0.1)];
     assert_eq!(of(solid(0.0, 1.0, false), &walls), [false; 2]);
     assert_eq!(of(solid(0.0, 1.0, true), &walls), [false; 2]);
+}
+
+#[test]
+fn pictures_by_rays_and_by_maps_differ_at_outlines_alone() {
+    let cover = square("cover", 1.0, -1.0, 0.5);
+    let bare = Settings { exposure: Some(1.0), ..settings() };
+    let frame = frame_of(vec![square("floor", 0.0, -2.0, 50.0), cover], bare.clone());
+    let by_rays = picture_by_rays(&frame).picture(1.0);
+    let by_maps = cpu::render(&frame).unwrap().lit;
+    let levels = |[a, b]: [&[u8; 4]; 2]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max();
+    let apart = |i: usize| levels([&by_rays.pixels[i], &by_maps.pixels[i]]).unwrap();
+    let lit = cpu::render(&frame_of(vec![square("floor", 0.0, -2.0, 50.0)], bare)).unwrap().lit;
+    let dark = (0..lit.pixels.len())
+        .filter(|i| lit.pixels[*i][1] > by_rays.pixels[*i][1].saturating_add(20));
+    let dark = dark.count();
+    let far = (0..by_rays.pixels.len()).filter(|i| apart(*i) > 8).count();
+    println!("{far} of {} pixels apart, {dark} dark", by_rays.pixels.len());
+    assert!(far > 0 && dark > 50 && far < dark / 2, "{far} {dark}");
 }

@@ -1363,6 +1363,8 @@ SCENE = ["--no-default-features", "--features", "scene"    ("src/measure/soft.rs
      "seen", "sides_of_solids_are_turned_away_and_no_others"),
     ("src/measure/solid.rs", "false => (filled + 1.0).abs() < WHOLE,", "false => true,",
      "seen", "sides_of_solids_are_turned_away_and_no_others"),
+    ("src/measure/picture.rs", "bench.true_visibility(&bench.on_triangle(at.triangle, world)) as f32", "1.0",
+     "seen", "pictures_by_rays_and_by_maps_differ_at_outlines_alone"),
 ]
 # the features that a test file needs; none where it is not listed
 FEATURES = {

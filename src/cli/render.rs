@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use dpsm::gpu::Device;
 use dpsm::render::{Frame, Lookup, Rendering, Settings};
-use dpsm::scene;
+use dpsm::{measure, scene};
 
 use super::output::{Outputs, print};
 use super::setup::{self, SetupArguments};
@@ -38,6 +38,10 @@ pub struct RenderArguments {
     /// edges of coarse meshes show in their shadows
     #[arg(long)]
     no_terminator: bool,
+    /// Also write the picture by rays in place of maps, to compare with: to the light as a point, or to
+    /// the sphere that the filter stands for
+    #[arg(long)]
+    rays: bool,
     /// Also write the shadow maps and what the light sees of each hemisphere or face
     #[arg(long)]
     maps: bool,
@@ -90,7 +94,10 @@ pub fn framed(arguments: &RenderArguments) -> Result<(String, Frame), CliError> 
     let terminator = !arguments.no_terminator;
     let base =
         Settings { image, lookup, samples, exposure, terminator, views, ..Settings::default() };
-    arguments.setup.frame(base)
+    match lookup {
+        Lookup::Pixel => arguments.setup.softened().frame(base),
+        Lookup::Vertex => arguments.setup.frame(base),
+    }
 }
 
 /// `dpsm render`.
@@ -98,7 +105,7 @@ pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(),
     let (scene, frame) = framed(arguments)?;
     let device = adapter.open()?;
     let mut outputs = Outputs::for_option("-o");
-    let picture = picture(device.as_ref(), &scene, &frame, &arguments.output, &mut outputs)?;
+    let picture = picture(device.as_ref(), &scene, &frame, arguments, &mut outputs)?;
     finish(format!("{}\n{picture}", describe(device.as_ref())), outputs)
 }
 
@@ -107,11 +114,16 @@ fn picture(
     device: Option<&Device>,
     scene: &str,
     frame: &Frame,
-    output: &Path,
+    arguments: &RenderArguments,
     outputs: &mut Outputs,
 ) -> Result<String, CliError> {
+    let output = &arguments.output;
     let rendering = setup::render(device, frame)?;
     outputs.add_picture(output, &rendering.lit)?;
+    if arguments.rays {
+        let by_rays = measure::picture_by_rays(frame).picture(rendering.exposure);
+        outputs.add_picture(&beside(output, "rays"), &by_rays)?;
+    }
     companions(frame, &rendering, output, outputs)?;
     let mut report = format!("{scene}: {} triangles\n", frame.triangles.len());
     let light = frame.light.position;
@@ -140,6 +152,12 @@ fn finish(mut report: String, outputs: Outputs) -> Result<(), CliError> {
     print(&report)
 }
 
+/// A companion's place beside the main picture.
+fn beside(output: &Path, kind: &str) -> PathBuf {
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    output.with_file_name(format!("{stem}-{kind}.png"))
+}
+
 /// Adds the maps as grey pictures and the light's views beside the main picture.
 fn companions(
     frame: &Frame,
@@ -148,17 +166,14 @@ fn companions(
     outputs: &mut Outputs,
 ) -> Result<(), CliError> {
     let names = frame.settings.method.projection().names();
-    let beside = |kind: &str| {
-        let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-        output.with_file_name(format!("{stem}-{kind}.png"))
-    };
     if let Some(maps) = &rendering.maps {
         for (layer, name) in (0..maps.layers).zip(names) {
-            outputs.add_picture(&beside(&format!("{name}-map")), &frame.grey(maps, layer))?;
+            outputs
+                .add_picture(&beside(output, &format!("{name}-map")), &frame.grey(maps, layer))?;
         }
     }
     for (view, name) in rendering.views.iter().zip(names) {
-        outputs.add_picture(&beside(&format!("{name}-view")), view)?;
+        outputs.add_picture(&beside(output, &format!("{name}-view")), view)?;
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ use super::output::read_text;
 use super::{CliError, parse_vector};
 
 /// Scene, light and method.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct SetupArguments {
     /// A built-in scene, or a .obj, .gltf or .glb file
     scene: String,
@@ -68,7 +68,8 @@ pub struct SetupArguments {
     /// How the maps are drawn
     #[arg(long, value_enum, default_value = "single")]
     passes: PassesName,
-    /// How the maps are read; by default single, or hard with a bias that single does not take
+    /// How the maps are read; by default single, or hard with a bias that single does not take;
+    /// pictures are soft by default (pcss)
     #[arg(long, value_enum)]
     filter: Option<FilterName>,
     /// For disk, mirror, reproject and pcss: taps of a kernel; for pcf: texels along its side
@@ -281,6 +282,22 @@ impl MethodName {
 }
 
 impl SetupArguments {
+    /// The same with soft shadows where nothing says how maps are read: by a spherical light, or for
+    /// several lights by kernels, which they all share. A cube's maps have no such filter.
+    pub fn softened(&self) -> Self {
+        let says = self.filter.is_some()
+            || self.bias.is_some()
+            || self.constant_bias.is_some()
+            || self.plan.is_some()
+            || matches!(self.method, MethodName::Cube);
+        let cone = self.kernel_angle.is_some() || self.kernel_radius.is_some();
+        let soft = match cone || !self.more_light.is_empty() {
+            true => FilterName::Disk,
+            false => FilterName::Pcss,
+        };
+        Self { filter: if says { self.filter } else { Some(soft) }, ..self.clone() }
+    }
+
     /// The name of the filter that is asked for, or that the bias is for.
     fn filter_name(&self) -> FilterName {
         let other = !matches!(self.bias, None | Some(BiasName::Plane | BiasName::Normal));

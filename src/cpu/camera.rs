@@ -82,6 +82,24 @@ pub(super) fn lit(frame: &Frame, maps: &DepthMaps, more: &[(Frame, DepthMaps)]) 
     sum.divided(places.len() as u32)
 }
 
+/// The lit image with a visibility of one's own, from 0 to 1, in place of what the maps say: of the
+/// place where a surface is tested.
+pub fn lit_by(frame: &Frame, visibility: impl Fn(SurfacePoint) -> f32 + Sync) -> Linear {
+    let image = frame.settings.image;
+    let places = frame.settings.places();
+    let eye = dpsm_to_light(float(frame.view.eye), frame.light);
+    let mut sum = Linear::empty(image);
+    for place in &places {
+        let seen = seen_by(frame, &frame.view.sampled(*place, image));
+        sum.add(&color(&seen, image, |_, triangle, weights| {
+            let surface = Surface::new(frame, triangle, weights);
+            let p = surface.receiver(frame, eye);
+            surface.shade(frame, eye, visibility(SurfacePoint { triangle, p }))
+        }));
+    }
+    sum.divided(places.len() as u32)
+}
+
 /// The same as the mean over several lights, as camera.wesl's `lights_fragment`.
 fn lights_pass(
     frame: &Frame,

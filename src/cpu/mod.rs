@@ -7,7 +7,7 @@ mod raster;
 mod surface;
 mod views;
 
-pub use camera::{SurfacePoint, surface_points};
+pub use camera::{SurfacePoint, lit_by, surface_points};
 pub use raster::{Fragment, triangle};
 pub use views::views;
 

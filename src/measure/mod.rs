@@ -21,7 +21,9 @@ pub use attribution::{Source, affine_depth, attribute, bowed_edges, draws_straig
 pub use band::Band;
 pub use map::{MAX_TAU, MapError, WorstTexel, map_error};
 pub use penumbra::{PenumbraError, coverage, penumbra_error};
-pub use picture::{PictureError, WRONG_HARD, WRONG_SOFT, errors_of_image, picture_error};
+pub use picture::{
+    PictureError, WRONG_HARD, WRONG_SOFT, errors_of_image, picture_by_rays, picture_error,
+};
 pub use seen::{SeenError, seen_error, surroundings_of};
 pub(crate) use shadow::nearest_change;
 pub use shadow::{Judgement, ShadowError, edge_point, judge, shadow_error};

@@ -3,8 +3,10 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Bench, Point};
-use crate::render::{Filter, rotation_at};
+use super::{Bench, Point, truth_of, world};
+use crate::cpu;
+use crate::render::{Filter, Frame, Linear, rotation_at};
+use crate::scalar::maps::{DepthMaps, Sampling};
 
 /// How far off a pixel's visibility is at the least where it counts as wrong, if the truth is 0 or 1.
 pub const WRONG_HARD: f64 = 0.5;
@@ -120,6 +122,24 @@ pub fn errors_of_image(
         point.as_ref().map(|point| error(index, point))
     });
     pixels.collect()
+}
+
+/// The frame's picture by rays in place of maps: to its light as a point, or to the sphere that its
+/// filter stands for; the mean over its lights.
+pub fn picture_by_rays(frame: &Frame) -> Linear {
+    let truth = truth_of(frame);
+    let none = DepthMaps::empty(1, frame.light.hemispheres, Sampling::Nearest);
+    let more = frame.more.iter().map(|light| Frame { light: *light, ..frame.clone() });
+    let lights: Vec<Frame> = std::iter::once(frame.clone()).chain(more).collect();
+    let mut sum = Linear::empty(frame.settings.image);
+    for frame in &lights {
+        let bench = Bench::new(frame, &none, &truth);
+        sum.add(&cpu::lit_by(frame, |at| {
+            let world = bench.origin + bench.to_world * world(at.p.widen());
+            bench.true_visibility(&bench.on_triangle(at.triangle, world)) as f32
+        }));
+    }
+    sum.divided(lights.len() as u32)
 }
 
 impl Bench<'_> {
