@@ -8,7 +8,7 @@ use dpsm::measure::{Bench, truth_of, truth_of_casters};
 use dpsm::plan::choose::{LEAST_SIZE, ladder, ladder_below};
 use dpsm::plan::cost::{self, EXACT, Rates, Seen};
 use dpsm::plan::{Plan, Proof, Request, Sight, Target, plan, shows};
-use dpsm::render::{Bias, Casting, Format, Frame, Method, Settings};
+use dpsm::render::{Bias, Casting, Filter, Format, Frame, Method, Settings};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Camera};
 use dpsm::truth::Truth;
@@ -143,14 +143,13 @@ fn of_scene(device: &Device, place: &Place) -> Result<Vec<Score>, Failed> {
         let mut score = pose.judge(&plan, target, number)?;
         score.milliseconds = milliseconds;
         println!(
-            "  {} {number}: {light:.2} {target}: {} {} x {} {} {} {}: share {:.3}, cost {:.3}, timed {:.2?}",
+            "  {} {number}: {light:.2} {target}: {} {} x {} {} {}: share {:.3}, cost {:.3}, timed {:.2?}",
             place.scene.name,
             plan.hemispheres,
             plan.size,
             plan.size,
             plan.format,
             plan.method,
-            plan.filter,
             score.share,
             score.cost.unwrap_or(f64::NAN),
             score.timed
@@ -237,31 +236,25 @@ impl Pose<'_> {
         for (axis, maps) in axes {
             for casting in &castings {
                 for method in METHODS {
-                    for filter in ["hard", "hardware"] {
-                        let mut casting = casting.clone();
-                        for of in &mut casting {
-                            *of = match of {
-                                Casting::By(_) => Casting::By(method),
-                                Casting::LeftOut => Casting::LeftOut,
-                            };
-                        }
-                        let (sampling, bias) = match filter {
-                            "hard" => (Sampling::Nearest, Bias::TexelCentre),
-                            _ => (Sampling::Linear, Bias::Footprint),
+                    let mut casting = casting.clone();
+                    for of in &mut casting {
+                        *of = match of {
+                            Casting::By(_) => Casting::By(method),
+                            Casting::LeftOut => Casting::LeftOut,
                         };
-                        let settings = Settings {
-                            method,
-                            casting,
-                            sampling,
-                            bias,
-                            format: Format::D32,
-                            near: Some(plan.near),
-                            far: Some(plan.far),
-                            ..Settings::default()
-                        };
-                        let name = format!("{method:?}, {filter}");
-                        found.push(Setting { name, settings, axis, maps });
                     }
+                    let settings = Settings {
+                        method,
+                        casting,
+                        filter: Filter::Single,
+                        bias: Bias::Plane,
+                        format: Format::D32,
+                        near: Some(plan.near),
+                        far: Some(plan.far),
+                        ..Settings::default()
+                    };
+                    let name = format!("{method:?}");
+                    found.push(Setting { name, settings, axis, maps });
                 }
             }
         }
@@ -338,12 +331,9 @@ impl Pose<'_> {
             _ => Rates::LLVMPIPE,
         };
         let [width, height] = settings.image.map(f64::from);
-        let lookup = match settings.sampling {
-            Sampling::Nearest => rates.hard,
-            Sampling::Linear => rates.hardware,
-        };
         let exact = if settings.method == Method::Exact { EXACT } else { 1.0 };
-        exact * cost::generation(&rates, loads, seen.len(), settings.size) + lookup * width * height
+        exact * cost::generation(&rates, loads, seen.len(), settings.size)
+            + rates.lookup * width * height
     }
 
     /// The plan's time to make its maps over the other's, in turn: medians.

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DMat3, DVec3};
 
 use super::Sample;
+use super::choose::reach;
 use super::cost::{Load, Seen, loads};
 
 /// The least cosine between a receiver that shows and the axis of a single map, so that receivers
@@ -28,7 +29,7 @@ pub struct Axis {
     pub maps: u32,
     /// What each holds, the mean over the lights.
     pub loads: Vec<Load>,
-    /// Texels along a side, guard band left out, for a lookup that errs by one texel.
+    /// Texels along a side, guard band left out, that the shadow edges ask for.
     pub demand: f64,
     /// Triangles that the seam cuts.
     pub straddling: usize,
@@ -58,9 +59,11 @@ impl Judge<'_> {
         Axis { name: name.into(), axis, maps, loads: sum, demand: self.demand(axis), straddling }
     }
 
-    /// A texel spans 2 (1 + |cos|) (1 + guard) / N at a direction: its share of the room there.
+    /// A texel spans 2 (1 + |cos|) (1 + guard) / N at a direction, and a lookup errs by `reach`
+    /// texels: their share of the room there.
     fn demand(&self, axis: DVec3) -> f64 {
-        let of = |sample: &Sample| 2.0 * (1.0 + sample.direction.dot(axis).abs()) / sample.room;
+        let texel = |sample: &Sample| 2.0 * (1.0 + sample.direction.dot(axis).abs());
+        let of = |sample: &Sample| reach(sample.incidence()) * texel(sample) / sample.room;
         self.samples.iter().map(of).fold(0.0, f64::max)
     }
 

@@ -1,31 +1,21 @@
-//! The sizes, formats and filters that an axis allows, with their costs and errors.
+//! The sizes and formats that an axis allows, with their costs and errors.
 
 use super::Sample;
 use super::axis::Axis;
 use super::cost::{EXACT, Rates, generation};
 use crate::render::{Format, guard_band};
-use crate::scalar::bias::{
-    DPSM_RECEIVER_ROUNDING, dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver,
-};
-use crate::scalar::float::{self as scalar, Vec2};
+use crate::scalar::bias::dpsm_bias_slack;
+use crate::scalar::float as scalar;
 use crate::scalar::light::DpsmLight;
-use crate::scalar::maps::Sampling;
+use crate::scalar::plane::{DPSM_PLANE_ROUNDING, DPSM_PLANE_SHIFT};
 
-/// How far from the true edge a point that is lit wrongly may be, in texels: half a texel's diagonal,
-/// to its texel's centre. 2 x 2 texels compared together err by half a texel along a straight edge,
-/// but by nearly as much as one at the corner of a shadow (docs/plan.md).
+/// How far from the true edge the place may be, in texels, at which 2 x 2 texels decide wrongly: half
+/// a texel along a straight edge, half a texel's diagonal at a shadow's corner (docs/plan.md).
 pub const REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// How far the texels are, in texels, that 2 x 2 comparisons read, but for those of less weight.
-const HARDWARE_WINDOW: f64 = 1.0;
-
-/// Footprint biases that 2 x 2 comparisons must leave of a gap: a strip beside a concave edge is
-/// seldom met by a sample, and the thinner the gap the narrower it is.
-const BIASES: f64 = 8.0;
-
-/// Sizes from what the edges ask for to so many times as much are tried: finer maps leave more of
-/// a gap to be forgiven.
-const FINER: f64 = 2.0;
+/// Sizes from what the edges ask for to so many times as much are tried: a finer map sees what is
+/// nearer in front of a receiver.
+const FINER: f64 = 4.0;
 
 /// Sizes per octave.
 const SIZES: u32 = 32;
@@ -45,8 +35,6 @@ pub struct Candidate {
     pub size: u32,
     /// Storage.
     pub format: Format,
-    /// Hard test or 2 x 2.
-    pub sampling: Sampling,
     /// Making the maps, ms.
     pub generation: f64,
     /// Reading them for all pixels, ms.
@@ -83,8 +71,28 @@ pub struct Case<'a> {
     pub rates: &'a Rates,
 }
 
-/// Format and sampling.
-pub type How = (Format, Sampling);
+/// How far a receiver's move along its normal takes it across the light's ray, in texels, by the
+/// cosine of its incidence.
+pub fn moved(incidence: f64) -> f64 {
+    DPSM_PLANE_SHIFT * (1.0 - incidence * incidence)
+}
+
+/// How far from the true edge a point that is lit wrongly may be, in texels, by the cosine of its
+/// incidence: what 2 x 2 texels err by where they are read, and the move to there.
+pub fn reach(incidence: f64) -> f64 {
+    REACH + moved(incidence)
+}
+
+/// How near in front of a receiver's plane what a texel holds may be without being in shadow for
+/// certain, and how little nearer than the receiver itself, as shares of its distance. By the cosine
+/// of its incidence and the angle of a texel.
+pub fn undecided(incidence: f64, pitch: f64) -> [f64; 2] {
+    let cosine = incidence.max(f64::MIN_POSITIVE);
+    let sine = (1.0 - cosine * cosine).sqrt();
+    // n . d grows by the move and by a texel; the plane is nearer in inverse proportion
+    let grown = pitch * (1.0 + DPSM_PLANE_SHIFT * sine / cosine) + DPSM_PLANE_ROUNDING / cosine;
+    [1.0 - 1.0 / (1.0 + grown), 1.0 - 1.0 / (1.0 + pitch)]
+}
 
 /// Bytes of a texel.
 pub fn texel_bytes(format: Format) -> u64 {
@@ -114,9 +122,9 @@ fn step(size: u32) -> u32 {
 impl Case<'_> {
     /// The size that the shadow edges ask for.
     pub fn edge_size(&self, axis: &Axis) -> f64 {
-        let plain = axis.demand * REACH;
         // the guard band is part of the side
-        plain * f64::from(1.0 + guard_band(plain.clamp(1.0, f64::from(MOST_SIZE)) as u32))
+        let guard = guard_band(axis.demand.clamp(1.0, f64::from(MOST_SIZE)) as u32);
+        axis.demand * f64::from(1.0 + guard)
     }
 
     /// All candidates of an axis, from the size that the edges ask for upwards.
@@ -126,69 +134,50 @@ impl Case<'_> {
         let next = |size: &u32| Some(size + step(*size)).filter(|size| *size <= most);
         let mut found = Vec::new();
         for size in std::iter::successors(Some(least), next) {
-            for sampling in [Sampling::Nearest, Sampling::Linear] {
-                for format in [Format::D16, Format::D32] {
-                    found.push(self.candidate(index, axis, size, (format, sampling)));
-                }
+            for format in [Format::D16, Format::D32] {
+                found.push(self.candidate(index, axis, size, format));
             }
         }
         found
     }
 
     /// One candidate, whatever its error.
-    pub fn candidate(
-        &self,
-        index: usize,
-        axis: &Axis,
-        size: u32,
-        (format, sampling): How,
-    ) -> Candidate {
-        let gap_share = self.gaps(axis, size, (format, sampling));
+    pub fn candidate(&self, index: usize, axis: &Axis, size: u32, format: Format) -> Candidate {
+        let gap_share = self.gaps(axis, size, format);
         let edge_share = self.edge_size(axis) / f64::from(size);
         let maps = u64::from(axis.maps);
         Candidate {
             axis: index,
             size,
             format,
-            sampling,
             generation: EXACT * generation(self.rates, &axis.loads, self.sorted, size),
-            lookup: self.pixels as f64
-                * match sampling {
-                    Sampling::Nearest => self.rates.hard,
-                    Sampling::Linear => self.rates.hardware,
-                },
+            lookup: self.pixels as f64 * self.rates.lookup,
             bytes: maps * u64::from(size) * u64::from(size) * texel_bytes(format),
             share: edge_share.max(gap_share),
         }
     }
 
-    /// The error as a share of the target where a lookup forgives a gap that must hold.
-    fn gaps(&self, axis: &Axis, size: u32, (format, sampling): How) -> f64 {
+    /// The error as a share of the target where a lookup misses an occluder that is no farther in
+    /// front of a shadowed receiver than it can tell.
+    fn gaps(&self, axis: &Axis, size: u32, format: Format) -> f64 {
         let light = self.light(size);
         let range = light.far - light.near;
         let quantum = f64::from(format.quantum());
-        let left = |sample: &Sample| {
+        let missed = |sample: &&Sample| {
             let cosine = sample.direction.dot(axis.axis);
             let pitch = 2.0 * (1.0 + cosine.abs()) * (1.0 + light.guard) / light.size;
-            let l = sample.distance;
-            let lean = DPSM_RECEIVER_ROUNDING * l / sample.incidence().max(f64::MIN_POSITIVE);
+            let (l, incidence) = (sample.distance, sample.incidence());
             // what is stored may be the neighbour above
-            let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range + lean;
-            match sampling {
-                Sampling::Nearest => sample.gap_within(REACH * pitch) - slack,
-                // the receiver's own distance less the bias is compared
-                Sampling::Linear => {
-                    let bias = BIASES * range * footprint(sample, cosine, &light);
-                    sample.behind_within(HARDWARE_WINDOW * pitch) - slack - bias
-                }
-            }
+            let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range;
+            let within = moved(incidence) * pitch;
+            let [gap, behind] = undecided(incidence, pitch).map(|share| share * l + slack);
+            sample.gap_within(within) <= gap || sample.behind_within(within) <= behind
         };
         let held = self.samples.iter().filter(|sample| sample.gap[0].is_finite());
-        let forgiven = held.filter(|sample| left(sample) <= 0.0);
-        forgiven.map(|sample| sample.edge / sample.allowed).fold(0.0, f64::max)
+        held.filter(missed).map(|sample| sample.edge / sample.allowed).fold(0.0, f64::max)
     }
 
-    /// A light with maps of a size, as the biases need it.
+    /// A light with maps of a size, as the slack needs it.
     fn light(&self, size: u32) -> DpsmLight<f64> {
         let [near, far] = self.spheres.map(f64::from);
         let none = scalar::Vec3::splat(0.0);
@@ -208,16 +197,4 @@ impl Case<'_> {
             padding: 0,
         }
     }
-}
-
-/// The footprint's bias of a sample whose direction has a cosine with the axis.
-fn footprint(sample: &Sample, cosine: f64, light: &DpsmLight<f64>) -> f64 {
-    // only the distance from the axis counts, and the incidence
-    let c = cosine.abs().min(1.0);
-    let r = ((1.0 - c) / (1.0 + c)).sqrt();
-    let incidence = sample.incidence();
-    let l = sample.distance;
-    let p = scalar::Vec3::new(0.0, 0.0, l);
-    let normal = scalar::Vec3::new((1.0 - incidence * incidence).sqrt(), 0.0, incidence);
-    dpsm_bias_footprint(dpsm_receiver(p, normal), Vec2::new(r, 0.0), 1.0, *light)
 }

@@ -20,10 +20,8 @@ pub struct Rates {
     pub inside: f64,
     /// A texel of a map: clearing and storing.
     pub texel: f64,
-    /// A pixel's lookup along its texel's centre.
-    pub hard: f64,
-    /// A pixel's comparison of 2 x 2 texels with the footprint's bias.
-    pub hardware: f64,
+    /// A pixel's lookup of the four texels around it.
+    pub lookup: f64,
 }
 
 impl Rates {
@@ -35,8 +33,7 @@ impl Rates {
         outline: 3.1e-5,
         inside: 1.3e-6,
         texel: 1.0e-6,
-        hard: 6.8e-6,
-        hardware: 8.0e-6,
+        lookup: 8.6e-6,
     };
 
     /// The same where triangles are drawn with straight edges (`vertex`, `fragment-depth`).

@@ -4,10 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::casters::Reason;
-use super::choose::{Candidate, Case, REACH};
+use super::choose::{Candidate, Case, reach};
 use super::{LeftOut, Plan, Request, VERSION};
 use crate::render::Format;
-use crate::scalar::maps::Sampling;
 
 /// One choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,16 +22,13 @@ pub struct Choice {
     pub error: Option<f64>,
 }
 
-/// The names of the choice's format and filter, as on the command line.
-fn names(best: &Candidate) -> [&'static str; 2] {
-    [
-        match best.format {
-            Format::D16 => "d16",
-            Format::D24 => "d24",
-            Format::D32 => "d32",
-        },
-        if best.sampling == Sampling::Linear { "hardware" } else { "hard" },
-    ]
+/// A format's name, as on the command line.
+fn name(format: Format) -> &'static str {
+    match format {
+        Format::D16 => "d16",
+        Format::D24 => "d24",
+        Format::D32 => "d32",
+    }
 }
 
 /// The plan of the best candidate, and a line for each choice.
@@ -45,7 +41,6 @@ pub fn explained(
     left_out: &[Option<Reason>],
 ) -> Plan {
     let axis = &axes[best.axis];
-    let [format, filter] = names(best);
     let left_out_meshes = left_out.iter().zip(&request.scene.meshes).enumerate();
     let left_out_meshes = left_out_meshes
         .filter(|(_, (reason, _))| reason.is_some())
@@ -61,9 +56,9 @@ pub fn explained(
         axis: axis.axis.as_vec3().to_array(),
         hemispheres: axis.maps,
         size: best.size,
-        format: format.into(),
+        format: name(best.format).into(),
         method: "exact".into(),
-        filter: filter.into(),
+        filter: "single".into(),
         near: case.spheres[0],
         far: case.spheres[1],
         left_out: left_out_meshes.collect(),
@@ -90,8 +85,10 @@ pub fn explained(
             "size",
             format!("{} x {}", best.size, best.size),
             format!(
-                "a lookup is off by up to {REACH:.3} texel; the shadow edges that show ask for {:.0}",
-                edge_size
+                "a lookup is off by {:.3} to {:.3} texel, the more the more grazing the light; the \
+                 shadow edges that show ask for {edge_size:.0}",
+                reach(1.0),
+                reach(0.0)
             ),
             Some(error(edges)),
         ),
@@ -104,7 +101,14 @@ pub fn explained(
                 .into(),
             None,
         ),
-        filter_line(candidates, best),
+        line(
+            "filter and bias",
+            "single, plane".into(),
+            "2 x 2 texels, each lit, in shadow or left out against the receiver's plane: no bias to \
+             tune"
+                .into(),
+            None,
+        ),
         line(
             "whole",
             request.error.with(error(best.share)).short(),
@@ -225,28 +229,7 @@ fn format_line(case: &Case<'_>, candidates: &[Candidate], best: &Candidate) -> C
         why += &format!("; d16 would be {}", instead(best, d16));
     }
     why += "; d24 takes the memory of d32";
-    Choice { what: "format".into(), value: names(best)[0].into(), why, error: None }
-}
-
-fn filter_line(candidates: &[Candidate], best: &Candidate) -> Choice {
-    let other = cheapest(candidates, |c| c.sampling != best.sampling);
-    let why = match best.sampling {
-        Sampling::Nearest => format!(
-            "one texel, the receiver's plane along its centre: no bias to tune; 2 x 2 texels would \
-             be {}",
-            instead(best, other)
-        ),
-        Sampling::Linear => format!(
-            "2 x 2 texels, with the footprint's bias, which the gaps that must hold allow; one texel \
-             would be {}",
-            instead(best, other)
-        ),
-    };
-    let value = match best.sampling {
-        Sampling::Nearest => "hard, texel-centre bias",
-        Sampling::Linear => "hardware, footprint bias",
-    };
-    Choice { what: "filter and bias".into(), value: value.into(), why, error: None }
+    Choice { what: "format".into(), value: name(best.format).into(), why, error: None }
 }
 
 impl Plan {

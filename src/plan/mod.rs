@@ -46,7 +46,7 @@ use choose::{Candidate, Case};
 use cost::Rates;
 
 /// The version of plan files that this program writes and reads.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
 /// Receivers that a plan looks at, shared out over the lights.
 const POINTS: usize = 20_000;
@@ -129,7 +129,7 @@ pub struct Plan {
     pub format: String,
     /// The method of all meshes that are kept: exact.
     pub method: String,
-    /// hard or hardware.
+    /// single: the four texels around a receiver against its plane.
     pub filter: String,
     /// Near sphere's radius.
     pub near: f32,
@@ -169,7 +169,7 @@ pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let sorted = seen.iter().map(Vec::len).max().unwrap_or(0);
     let [width, height] = request.image.map(u64::from);
     let plain = |axis: &Axis| {
-        let size = choose::ladder(axis.demand * choose::REACH);
+        let size = choose::ladder(axis.demand);
         cost::generation(&request.rates, &axis.loads, sorted, size)
     };
     let judge = Judge { samples: &samples, seen: &seen, cost: &plain };
@@ -218,9 +218,8 @@ impl Plan {
     /// The settings that it stands for; image, lookup and views are those of `base`.
     pub fn settings(&self, base: &Settings) -> Result<Settings, PlanError> {
         let unknown = |what, value: &str| PlanError::Value { what, value: value.into() };
-        let (sampling, bias) = match self.filter.as_str() {
-            "hard" => (Sampling::Nearest, Bias::TexelCentre),
-            "hardware" => (Sampling::Linear, Bias::Footprint),
+        let filter = match self.filter.as_str() {
+            "single" => Filter::Single,
             other => return Err(unknown("filter", other)),
         };
         let method = match self.method.as_str() {
@@ -242,9 +241,8 @@ impl Plan {
                 other => return Err(unknown("format", other)),
             },
             method,
-            filter: Filter::Single,
-            sampling,
-            bias,
+            filter,
+            bias: Bias::Plane,
             near: Some(self.near),
             far: Some(self.far),
             ..base.clone()
@@ -265,11 +263,7 @@ fn within_budget(request: &Request<'_>, case: &Case<'_>, axes: &[Axis]) -> Vec<C
         for format in [Format::D16, Format::D32] {
             let texels = most / (u64::from(axis.maps) * choose::texel_bytes(format));
             let size = choose::ladder_below((texels as f64).sqrt());
-            for sampling in [Sampling::Nearest, Sampling::Linear] {
-                let how = (format, sampling);
-                let at = |size| case.candidate(index, axis, size, how);
-                found.extend(size.map(at));
-            }
+            found.extend(size.map(|size| case.candidate(index, axis, size, format)));
         }
     }
     found

@@ -11,10 +11,12 @@ use rayon::prelude::*;
 use super::sight::{Ends, turned};
 use super::{Sight, Target};
 use crate::measure::{Bench, Point};
-use crate::render::Frame;
+use crate::render::{Bias, Frame};
+use crate::scalar::bias::dpsm_receiver;
 use crate::scalar::float::Vec2;
 use crate::scalar::maps::Sampling;
 use crate::scalar::paraboloid::{dpsm_disk_to_texture, dpsm_texture_to_disk};
+use crate::scalar::plane::{DPSM_PLANE_SHIFT, dpsm_plane, dpsm_plane_four};
 
 /// Azimuths in which an edge is looked for: the nearest is at most 1 / cos(pi / 32) as far as in
 /// the best direction, 0.5%.
@@ -162,17 +164,26 @@ impl<'a> Proof<'a> {
     /// The same for an edge so narrow that no ring meets it: one that a texel's centre lies behind.
     fn edge_at_centres(&self, bench: &Bench<'_>, point: &Point) -> f64 {
         let (map, uv) = bench.place(point);
-        let (size, guard) = (bench.light.size, bench.light.guard);
-        let st = dpsm_disk_to_texture(uv, guard) * size;
-        let reach: &[f64] = match bench.maps.sampling {
-            Sampling::Nearest => &[0.0],
-            Sampling::Linear => &[-0.5, 0.5],
+        let (light, guard) = (bench.light, bench.light.guard);
+        let settings = &bench.frame.settings;
+        let (first, side) = match (settings.bias_taken(), bench.maps.sampling) {
+            (Bias::Plane, _) => {
+                // the four around the receiver that is moved along its normal
+                let (p, normal) = bench.receiver(point);
+                let receiver = dpsm_receiver(p.widen(), normal.widen());
+                let at = dpsm_plane(p.widen(), receiver, DPSM_PLANE_SHIFT, light, 0.0, 0.0);
+                (dpsm_plane_four(at, light).xy(), 2)
+            }
+            (_, Sampling::Nearest) => ((dpsm_disk_to_texture(uv, guard) * light.size).floor(), 1),
+            (_, Sampling::Linear) => {
+                let half = Vec2::splat(0.5);
+                ((dpsm_disk_to_texture(uv, guard) * light.size - half).floor(), 2)
+            }
         };
-        let texel = |at: f64, off: f64| (at + off).floor() + 0.5;
-        let centres = reach.iter().flat_map(|x| reach.iter().map(move |y| [*x, *y]));
+        let centres = (0..side).flat_map(|y| (0..side).map(move |x| [x, y].map(f64::from)));
         let allowed = self.allowed(point);
         let shares = centres.map(|[x, y]| {
-            let centre = Vec2::new(texel(st.x, x), texel(st.y, y)) / size;
+            let centre = (first + Vec2::new(x + 0.5, y + 0.5)) / light.size;
             let direction = bench.direction(dpsm_texture_to_disk(centre, guard), map);
             let towards = |sight: Sight<'_>| sight.edge_towards(point, direction.normalize());
             towards(self.sight).min(towards(self.casters)) / allowed
