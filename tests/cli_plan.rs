@@ -124,9 +124,9 @@ fn bad_plans_are_refused() {
     let json = std::fs::read_to_string(folder.join("p.json")).unwrap();
     let write = |name: &str, text: String| std::fs::write(folder.join(name), text).unwrap();
     write("text.json", "no plan".into());
-    write("version.json", json.replace("\"version\": 1", "\"version\": 7"));
+    write("version.json", json.replace("\"version\": 2", "\"version\": 7"));
     write("size.json", json.replace("\"size\": ", "\"size\": 9999"));
-    write("filter.json", json.replace("\"filter\": \"hard", "\"filter\": \"blur"));
+    write("filter.json", json.replace("\"filter\": \"single", "\"filter\": \"hard"));
     let render = |scene: &'static str, plan: &'static str, more: &[&'static str]| {
         let all = ["--adapter", "cpu", "render", scene, "-o", "p.png", "--plan", plan];
         refused(&folder, &[&all[..], more].concat())
@@ -134,8 +134,8 @@ fn bad_plans_are_refused() {
     for (stderr, part) in [
         (render("cornell", "none.json", &[]), "cannot read none.json"),
         (render("cornell", "text.json", &[]), "text.json is no plan"),
-        (render("cornell", "version.json", &[]), "a plan of version 7, not 1"),
-        (render("cornell", "filter.json", &[]), "the plan's filter `blur"),
+        (render("cornell", "version.json", &[]), "a plan of version 7, not 2"),
+        (render("cornell", "filter.json", &[]), "the plan's filter `hard`"),
         (render("cornell", "size.json", &[]), "must be from 1 to"),
         (render("brabec-room", "p.json", &[]), "the plan is for `cornell` with 7 meshes"),
         (

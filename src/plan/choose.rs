@@ -1,5 +1,7 @@
 //! The sizes and formats that an axis allows, with their costs and errors.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use super::Sample;
 use super::axis::Axis;
 use super::cost::{EXACT, Rates, generation};
@@ -8,10 +10,6 @@ use crate::scalar::bias::dpsm_bias_slack;
 use crate::scalar::float as scalar;
 use crate::scalar::light::DpsmLight;
 use crate::scalar::plane::{DPSM_PLANE_ROUNDING, DPSM_PLANE_SHIFT};
-
-/// How far from the true edge the place may be, in texels, at which 2 x 2 texels decide wrongly: half
-/// a texel along a straight edge, half a texel's diagonal at a shadow's corner (docs/plan.md).
-pub const REACH: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Sizes from what the edges ask for to so many times as much are tried: a finer map sees what is
 /// nearer in front of a receiver.
@@ -78,9 +76,14 @@ pub fn moved(incidence: f64) -> f64 {
 }
 
 /// How far from the true edge a point that is lit wrongly may be, in texels, by the cosine of its
-/// incidence: what 2 x 2 texels err by where they are read, and the move to there.
+/// incidence: 2 x 2 texels decide where the receiver is moved to, and those that are wrong weigh half
+/// or more, however the shadow's border runs (docs/plan.md).
 pub fn reach(incidence: f64) -> f64 {
-    REACH + moved(incidence)
+    let moved = moved(incidence);
+    // all but the nearest texel, from where that one weighs half
+    let three = (1.0 + moved) * FRAC_1_SQRT_2;
+    // two at one side, from the middle of the four
+    three.hypot(1.0 - three).max((0.5 + moved).hypot(0.5))
 }
 
 /// How near in front of a receiver's plane what a texel holds may be without being in shadow for

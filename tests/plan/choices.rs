@@ -1,11 +1,12 @@
 //! Size, format, budget, and plans as files.
 
-use dpsm::plan::choose::{LEAST_SIZE, MOST_SIZE, ladder, ladder_below};
-use dpsm::plan::{Plan, PlanError, Request, Target, plan};
-use dpsm::render::{Bias, Casting, Format, Method, Settings};
-use dpsm::scalar::maps::Sampling;
+use dpsm::plan::axis::Axis;
+use dpsm::plan::choose::{Case, LEAST_SIZE, MOST_SIZE, ladder, ladder_below};
+use dpsm::plan::cost::{Load, Rates};
+use dpsm::plan::{Plan, PlanError, Request, Sample, Target, plan};
+use dpsm::render::{Bias, Casting, Filter, Format, Method, Settings};
 use dpsm::scene::Camera;
-use glam::{Vec3, vec3};
+use glam::{DVec3, Vec3, vec3};
 
 use super::{built_in, floor_and_board, planned, target};
 
@@ -49,8 +50,7 @@ fn sizes_ascend_by_a_thirtysecond_of_an_octave_or_eight() {
 fn finer_targets_ask_for_larger_maps() {
     let scene = built_in("cornell");
     let sizes = ["1deg", "0.5deg", "0.25deg"].map(|error| planned(&scene, error).size);
-    // of the same filter twice as fine a target asks for twice the size; the other filter or a
-    // thinner gap changes it by no more than their reaches' ratio and a doubling
+    // twice as fine a target asks for twice the size, and a thin gap for up to as much again
     assert!(sizes[0] < sizes[1] && sizes[1] < sizes[2], "{sizes:?}");
 }
 
@@ -69,23 +69,59 @@ fn a_budget_that_is_too_small_gives_the_finest_maps_in_it_and_says_so() {
         "{}",
         tight.explanation()
     );
-    // half as wide a map errs twice as much, but for the ladder's step and the filter
+    // half as wide a map errs twice as much, but for the ladder's step
     let none = plan(&Request { budget: Some(100), ..request });
     assert_eq!(none.unwrap_err(), PlanError::Budget);
 }
 
 #[test]
-fn thin_gaps_forbid_coarse_formats() {
-    // of all surfaces, the floor under the board as well: a step of d16 is 9e-5 here, and what
-    // f32 rounds away 2e-5
+fn thin_gaps_ask_for_finer_maps() {
+    // of all surfaces, the floor under the board as well: 2 away, where a texel of the map that the
+    // edges ask for is 0.03 wide
     let mut scene = floor_and_board(None);
-    for (height, format) in [(5e-5, "d32"), (0.5, "d16")] {
+    let [far, near, touching] = [0.5, 0.015, 1e-4].map(|height| {
         for position in &mut scene.meshes[1].positions {
             position.y = height;
         }
-        let plan = plan(&Request::new(&scene, target("0.5deg"))).unwrap();
-        assert_eq!(plan.format, format, "{}", plan.explanation());
-    }
+        plan(&Request::new(&scene, target("0.5deg"))).unwrap()
+    });
+    assert!(far.meets && near.meets, "{}", near.explanation());
+    assert!(near.size > far.size + far.size / 4, "{}", near.explanation());
+    assert!(!touching.meets, "{}", touching.explanation());
+}
+
+#[test]
+fn thin_gaps_forbid_coarse_formats() {
+    // near the light a texel is thinner than a step of d16
+    let gap = [3e-4; 2];
+    let sample = Sample {
+        direction: DVec3::X,
+        distance: 0.03,
+        normal: DVec3::X,
+        allowed: 0.01,
+        room: 0.01,
+        edge: 0.02,
+        gap,
+        behind: gap,
+    };
+    let case = Case {
+        samples: &[sample],
+        spheres: [0.01, 10.0],
+        sorted: 0,
+        pixels: 1,
+        rates: &Rates::LLVMPIPE,
+    };
+    let axis = Axis {
+        name: "any".into(),
+        axis: DVec3::X,
+        maps: 1,
+        loads: vec![Load::default()],
+        demand: 1.0,
+        straddling: 0,
+    };
+    let share = |format| case.candidate(0, &axis, 1024, format).share;
+    assert!(share(Format::D32) < 1.0);
+    assert_eq!(share(Format::D16), 2.0);
 }
 
 #[test]
@@ -146,11 +182,7 @@ fn plans_survive_a_file_and_become_settings() {
     assert_eq!((size, near, far), (plan.size, plan.near, plan.far));
     assert_eq!(settings.format, Format::D16);
     assert_eq!(settings.method, Method::Exact);
-    let bias = match settings.sampling {
-        Sampling::Nearest => Bias::TexelCentre,
-        Sampling::Linear => Bias::Footprint,
-    };
-    assert_eq!(settings.bias, bias);
+    assert_eq!((settings.filter, settings.bias), (Filter::Single, Bias::Plane));
     let out = settings.casting.iter().filter(|casting| **casting == Casting::LeftOut).count();
     assert_eq!((out, settings.casting.len()), (6, scene.meshes.len()));
     assert_eq!(settings.casting[14], Casting::By(Method::Exact));
@@ -171,7 +203,8 @@ fn plans_that_do_not_fit_are_refused() {
     assert_eq!(Plan { version: 9, ..plan.clone() }.check(&scene), Err(PlanError::Version(9)));
     let base = Settings::default();
     for (changed, what) in [
-        (Plan { filter: "pcf".into(), ..plan.clone() }, "filter"),
+        (Plan { filter: "hard".into(), ..plan.clone() }, "filter"),
+        (Plan { filter: "hardware".into(), ..plan.clone() }, "filter"),
         (Plan { format: "d64".into(), ..plan.clone() }, "format"),
         (Plan { method: "vertex".into(), ..plan.clone() }, "method"),
     ] {

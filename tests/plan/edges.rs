@@ -3,72 +3,197 @@
 use dpsm::cpu;
 use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
 use dpsm::plan::axis::Judge;
-use dpsm::plan::choose::REACH;
+use dpsm::plan::choose::{moved, reach, undecided};
 use dpsm::plan::cost::{self, loads};
 use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Wrong, plan, shows};
 use dpsm::render::{Casting, Frame, Method, Settings};
-use dpsm::scalar::float::Vec2;
-use dpsm::scalar::maps::{DepthMaps, Sampling};
-use dpsm::scalar::paraboloid::dpsm_texel_pitch;
+use dpsm::scalar::bias::{DpsmReceiver, dpsm_receiver};
+use dpsm::scalar::depth::dpsm_receiver_depth;
+use dpsm::scalar::float::{self as scalar, Vec2};
+use dpsm::scalar::hemisphere::dpsm_flip;
+use dpsm::scalar::light::DpsmLight;
+use dpsm::scalar::maps::{DepthMaps, Maps, Sampling};
+use dpsm::scalar::paraboloid::{
+    dpsm_project_own, dpsm_texel_pitch, dpsm_texel_width, dpsm_texture_to_disk, dpsm_unproject,
+};
+use dpsm::scalar::plane::{DPSM_PLANE_SHIFT, dpsm_plane, dpsm_visibility_plane};
 use dpsm::scene::{Options, Scene, open};
 use fastrand::Rng;
 use glam::{DVec3, Vec3, dvec3, vec3};
-use std::f64::consts::{FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, TAU};
 
 use super::{built_in, floor_and_board, square, target};
 
-/// A point at random between four texels' centres, and a shadow at random beside it, bounded by one
-/// edge or by two at a right angle: how far it is from the shadow's border where a lookup lights it
-/// wrongly.
-fn wrong_by(rng: &mut Rng, sampling: Sampling, corner: bool) -> Option<f64> {
-    let (sin, cos) = (rng.f64() * TAU).sin_cos();
+/// The texels' centres around a place in the square between them.
+const CENTRES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+
+/// What each of them weighs at a place.
+fn weights(p: [f64; 2]) -> [f64; 4] {
+    CENTRES.map(|[x, y]| (1.0 - (p[0] - x).abs()) * (1.0 - (p[1] - y).abs()))
+}
+
+/// A receiver at random, some of the texels around it taken at random for the wrong ones: how far
+/// away a shadow's border of any shape may be where they decide. It is no farther than the nearest.
+fn wrong_by(rng: &mut Rng, moved: f64) -> Option<f64> {
     let p = [rng.f64(), rng.f64()];
-    let [along, across] = [rng.f64() * 1.6 - 0.8, rng.f64() * 1.6 - 0.8];
-    // distances from both edges, above 0 on the shadow's side
-    let sides = |[x, y]: [f64; 2]| {
-        let [x, y] = [x - p[0], y - p[1]];
-        let across = if corner { across } else { f64::INFINITY };
-        [x * cos + y * sin + along, y * cos - x * sin + across]
-    };
-    let dark = |at: [f64; 2]| sides(at).into_iter().all(|side| side >= 0.0);
-    let centres = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
-    let share: f64 = match sampling {
-        Sampling::Nearest => f64::from(u8::from(dark(p.map(f64::round)))),
-        Sampling::Linear => {
-            let weight = |[x, y]: [f64; 2]| (1.0 - (p[0] - x).abs()) * (1.0 - (p[1] - y).abs());
-            centres.into_iter().filter(|at| dark(*at)).map(weight).sum()
+    let (sin, cos) = (rng.f64() * TAU).sin_cos();
+    let receiver = [p[0] + moved * cos, p[1] + moved * sin];
+    let wrong: [bool; 4] = std::array::from_fn(|_| rng.bool());
+    let weight: f64 = weights(p).into_iter().zip(wrong).map(|(w, is)| f64::from(is) * w).sum();
+    let distance = |[x, y]: [f64; 2]| (x - receiver[0]).hypot(y - receiver[1]);
+    let distances = CENTRES.map(distance).into_iter().zip(wrong).filter(|(_, wrong)| *wrong);
+    (weight >= 0.5).then(|| distances.map(|(d, _)| d).fold(f64::INFINITY, f64::min))
+}
+
+/// The same for a shadow with a straight edge whose occluder is too near to tell within `contact`
+/// texels of it.
+fn wrong_by_edge(rng: &mut Rng, contact: f64, moved: f64) -> Option<f64> {
+    let p = [rng.f64(), rng.f64()];
+    let (sin, cos) = (rng.f64() * TAU).sin_cos();
+    let own = (rng.f64() * 2.0 - 1.0) * (1.0 + contact);
+    let [mut lit, mut dark] = [0.0; 2];
+    for ([x, y], weight) in CENTRES.into_iter().zip(weights(p)) {
+        // how far in the shadow
+        match (x - p[0]) * cos + (y - p[1]) * sin + own {
+            depth if depth < 0.0 => lit += weight,
+            depth if depth >= contact => dark += weight,
+            _ => {}
         }
-    };
-    let [a, b] = sides(p);
-    // inside the nearer edge; outside the corner, or the one edge whose side is wrong
-    let distance = match dark(p) {
-        true => a.min(b),
-        false => a.min(0.0).hypot(b.min(0.0)),
-    };
-    ((share > 0.5) != dark(p)).then_some(distance)
+    }
+    let shown = lit + dark == 0.0 || lit / (lit + dark) >= 0.5;
+    let receiver = own + if rng.bool() { moved } else { -moved };
+    (shown == (receiver >= 0.0)).then_some(receiver.abs())
 }
 
 #[test]
-fn no_wrong_point_is_beyond_half_a_diagonal_and_some_come_near_it() {
+fn no_wrong_point_is_beyond_the_reach_and_some_come_near_it() {
     const POINTS: usize = 4_000_000;
     let mut rng = Rng::with_seed(11);
-    let mut wrong = |sampling, corner| -> Vec<f64> {
-        (0..POINTS).filter_map(|_| wrong_by(&mut rng, sampling, corner)).collect()
+    let mut most = |wrong_by: &dyn Fn(&mut Rng) -> Option<f64>| {
+        (0..POINTS).filter_map(|_| wrong_by(&mut rng)).fold(0.0, f64::max)
     };
-    let hard = wrong(Sampling::Nearest, false);
-    // half a diagonal; along an edge 2 x 2 texels err by half a texel, at corners by as much as one
-    let diagonal = REACH;
-    let most = |wrong: Vec<f64>| wrong.into_iter().fold(0.0, f64::max);
-    for (name, largest, bound) in [
-        ("hard", most(hard), diagonal),
-        ("hard, corners", most(wrong(Sampling::Nearest, true)), diagonal),
-        ("2 x 2", most(wrong(Sampling::Linear, false)), 0.5),
-        ("2 x 2, corners", most(wrong(Sampling::Linear, true)), diagonal),
-    ] {
-        println!("{name}: {largest:.4} of {bound:.4}");
-        // wrong points thin out towards the bound: of so many the largest is within a tenth
-        assert!(largest <= bound && largest > 0.9 * bound, "{name}: {largest} of {bound}");
+    let shift = DPSM_PLANE_SHIFT;
+    for incidence in [1.0, 0.8, 0.5, 0.0] {
+        let bound = reach(incidence);
+        let largest = most(&|rng| wrong_by(rng, moved(incidence)));
+        println!("any shape, cosine {incidence}: {largest:.4} of {bound:.4}");
+        // wrong points thin out towards the bound
+        assert!(largest <= bound && largest > 0.98 * bound, "{incidence}: {largest} of {bound}");
     }
+    // what stands on the floor upright and thin is too near to tell within half a diagonal
+    for (contact, moved, bound) in [
+        (0.0, 0.0, 0.5),
+        (0.0, shift, 0.5 + shift),
+        (FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2),
+        (1.5, 0.0, 1.5),
+        (1.5, shift, 1.5 + shift),
+    ] {
+        let largest = most(&|rng| wrong_by_edge(rng, contact, moved));
+        println!("an edge, {contact:.2}, {moved:.2}: {largest:.4} of {bound:.4}");
+        assert!(largest <= bound && largest > 0.96 * bound, "{contact} {moved}: {largest}");
+    }
+}
+
+/// A light whose axes are the world's.
+fn light() -> DpsmLight<f64> {
+    DpsmLight {
+        near: 0.1,
+        far: 10.0,
+        guard: 0.01,
+        size: 512.0,
+        first_layer: 0,
+        hemispheres: 2,
+        ..dpsm::cases::light(0).widen()
+    }
+}
+
+fn unit(rng: &mut Rng) -> DVec3 {
+    loop {
+        let v = dvec3(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0;
+        if (0.1..1.0).contains(&v.length()) {
+            return v.normalize();
+        }
+    }
+}
+
+/// A receiver at random, its distance and normal, up to a cosine of its incidence.
+fn receiver(rng: &mut Rng, least: f64) -> (scalar::Vec3<f64>, DpsmReceiver<f64>) {
+    loop {
+        let [d, n] = [unit(rng), unit(rng)].map(|v| scalar::Vec3::new(v.x, v.y, v.z));
+        let p = d * (1.0 + 8.0 * rng.f64());
+        if d.dot(n).abs() >= least {
+            return (p, dpsm_receiver(p, n));
+        }
+    }
+}
+
+#[test]
+fn receivers_move_across_the_ray_by_what_the_reach_counts() {
+    let mut rng = Rng::with_seed(3);
+    let light = light();
+    for _ in 0..10_000 {
+        let (p, receiver) = receiver(&mut rng, 0.0);
+        let at = dpsm_plane(p, receiver, DPSM_PLANE_SHIFT, light, 0.0, 0.0);
+        let way = (at.uv - dpsm_project_own(p)).length();
+        let texels = way / dpsm_texel_width(light.size, light.guard);
+        // the lean loses half its digits where the incidence is steep
+        assert!((texels - moved(at.cosine)).abs() < 1e-7, "{texels} {}", at.cosine);
+    }
+}
+
+/// Maps that hold one plane, in front of all receivers on another that is parallel to it.
+struct Sheet {
+    light: DpsmLight<f64>,
+    plane: scalar::Vec3<f64>,
+    height: f64,
+}
+
+impl Maps<f64> for Sheet {
+    fn compare(&self, _: Vec2<f64>, _: u32, _: f64) -> f64 {
+        unreachable!("the lookup gathers")
+    }
+
+    fn size(&self) -> Vec2<f64> {
+        Vec2::splat(self.light.size)
+    }
+
+    fn load(&self, texel: Vec2<f64>, layer: u32) -> f64 {
+        let st = (texel + Vec2::splat(0.5)) / self.light.size;
+        let d = dpsm_flip(dpsm_unproject(dpsm_texture_to_disk(st, self.light.guard)), layer);
+        let facing = self.plane.dot(d);
+        let distance = if facing > 0.0 { self.height / facing } else { f64::INFINITY };
+        dpsm_receiver_depth(distance, self.light.near, self.light.far)
+    }
+}
+
+#[test]
+fn an_occluder_shadows_from_as_far_in_front_as_is_said() {
+    let mut rng = Rng::with_seed(4);
+    let light = light();
+    let mut tightest: f64 = 0.0;
+    for _ in 0..4_000 {
+        let (p, receiver) = receiver(&mut rng, 0.2);
+        let at = dpsm_plane(p, receiver, 0.0, light, 0.0, 0.0);
+        let [gap, behind] = undecided(at.cosine, at.pitch);
+        assert!(behind <= gap);
+        let plane = receiver.plane.xyz();
+        let shown = |share: f64| {
+            let sheet = Sheet { light, plane, height: receiver.plane.w * (1.0 - share) };
+            dpsm_visibility_plane(&sheet, p, receiver, light, 0.0, 0.0)
+        };
+        // rounding's slack is 64 eps here
+        assert_eq!(shown(gap * 1.01 + 1e-5), 0.0, "{at:?}");
+        let (mut lit, mut dark) = (0.0, gap * 1.01 + 1e-5);
+        for _ in 0..20 {
+            let middle = 0.5 * (lit + dark);
+            if shown(middle) >= 0.5 { lit = middle } else { dark = middle }
+        }
+        // texels differ by the plane's slope across them
+        let slope = (1.0 - at.cosine * at.cosine).sqrt() / at.cosine;
+        assert!(lit >= gap * (0.99 - 3.0 * at.pitch * slope), "{lit} of {gap}: {at:?}");
+        tightest = tightest.max(lit / gap);
+    }
+    assert!(tightest > 0.98, "{tightest}");
 }
 
 /// A sample that needs an angle in a direction.
@@ -87,24 +212,21 @@ fn sample(direction: DVec3, room: f64) -> Sample {
 }
 
 #[test]
-fn the_demand_is_the_size_whose_texel_is_as_wide_as_the_room() {
+fn the_demand_is_the_size_whose_reach_is_as_wide_as_the_room() {
     let mut rng = Rng::with_seed(5);
-    let mut unit = || loop {
-        let v = dvec3(rng.f64(), rng.f64(), rng.f64()) * 2.0 - 1.0;
-        if (0.1..1.0).contains(&v.length()) {
-            return v.normalize();
-        }
-    };
     for _ in 0..1_000 {
-        let (axis, direction) = (unit(), unit());
-        let samples = [sample(direction, 0.003)];
+        let [axis, direction, normal] = [unit(&mut rng), unit(&mut rng), unit(&mut rng)];
+        let samples = [Sample { normal, ..sample(direction, 0.003) }];
         let judge = Judge { samples: &samples, seen: &[], cost: &|_| 0.0 };
         let demand = judge.axis("any", axis, 2).demand;
         let c = direction.dot(axis).abs();
         let r = ((1.0 - c) / (1.0 + c)).sqrt();
         let pitch = dpsm_texel_pitch(Vec2::new(r, 0.0), demand, 0.0);
-        // a dozen roundings
-        assert!((pitch / 0.003 - 1.0).abs() < 12.0 * f64::EPSILON, "{pitch}");
+        // two dozen roundings
+        assert!(
+            (reach(direction.dot(normal)) * pitch / 0.003 - 1.0).abs() < 24.0 * f64::EPSILON,
+            "{pitch}"
+        );
     }
 }
 
@@ -136,8 +258,9 @@ fn a_local_search_finds_an_axis_between_the_named_ones() {
     let found = judge.best(&named.map(|(name, axis)| (name.to_string(), axis)), 2);
     let searched = found.last().unwrap();
     // 2 (1 + cos) / room: the last step leaves less than itself of the angle
-    assert!(searched.demand <= 200.0 * (1.0 + 0.02), "{searched:?}");
-    assert!(found[..3].iter().all(|axis| axis.demand > 200.0 * 1.4), "{found:?}");
+    let least = 200.0 * reach(1.0);
+    assert!(searched.demand <= least * (1.0 + 0.02), "{searched:?}");
+    assert!(found[..3].iter().all(|axis| axis.demand > least * 1.4), "{found:?}");
 }
 
 #[test]
