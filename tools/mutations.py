@@ -1343,6 +1343,10 @@ MUTATIONS = [
      "plan", "choices::targets_are_angles"),
     ("src/plan/score.rs", "(edge(self.sight).min(edge(self.casters)) / allowed)", "(edge(self.sight) / allowed)",
      "plan", "edges::a_shadow_edge_behind_a_wall_that_no_map_holds_counts"),
+    ("src/plan/score.rs", "receiver, DPSM_PLANE_SHIFT, light", "receiver, 0.0, light",
+     "plan", "edges::a_shadow_that_no_ring_meets_is_found_where_the_texels_are_that_were_read"),
+    ("src/plan/score.rs", "(dpsm_plane_four(at, light).xy(), 2)", "(dpsm_plane_four(at, light).xy(), 1)",
+     "plan", "edges::a_shadow_that_no_ring_meets_is_found_where_the_texels_are_that_were_read"),
     ("src/plan/sight.rs", "edge: edge.min(rings[1]),", "edge,",
      "plan", "choices::a_gap_that_no_map_holds_is_said_and_the_plan_still_reads_back"),
     # mistakes in the modules alone

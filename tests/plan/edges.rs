@@ -5,8 +5,8 @@ use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
 use dpsm::plan::axis::Judge;
 use dpsm::plan::choose::{moved, reach, undecided};
 use dpsm::plan::cost::{self, loads};
-use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Wrong, plan, shows};
-use dpsm::render::{Casting, Frame, Method, Settings};
+use dpsm::plan::{Plan, Proof, Request, Sample, Sight, Target, Wrong, plan, shows};
+use dpsm::render::{Bias, Casting, Filter, Frame, Method, Settings};
 use dpsm::scalar::bias::{DpsmReceiver, dpsm_receiver};
 use dpsm::scalar::depth::dpsm_receiver_depth;
 use dpsm::scalar::float::{self as scalar, Vec2};
@@ -14,7 +14,8 @@ use dpsm::scalar::hemisphere::dpsm_flip;
 use dpsm::scalar::light::DpsmLight;
 use dpsm::scalar::maps::{DepthMaps, Maps, Sampling};
 use dpsm::scalar::paraboloid::{
-    dpsm_project_own, dpsm_texel_pitch, dpsm_texel_width, dpsm_texture_to_disk, dpsm_unproject,
+    dpsm_disk_to_texture, dpsm_project_own, dpsm_texel_pitch, dpsm_texel_width,
+    dpsm_texture_to_disk, dpsm_unproject,
 };
 use dpsm::scalar::plane::{DPSM_PLANE_SHIFT, dpsm_plane, dpsm_visibility_plane};
 use dpsm::scene::{Options, Scene, open};
@@ -364,4 +365,61 @@ fn a_shadow_edge_behind_a_wall_that_no_map_holds_counts() {
     // atan(1 / 2) - atan(0.98 / 2) is 0.461 degrees; rings and azimuths find it up to 5% farther
     assert_eq!(wrong.wrong, 1);
     assert!((0.92..0.97).contains(&wrong.share), "{wrong:?}");
+}
+
+#[test]
+fn a_shadow_that_no_ring_meets_is_found_where_the_texels_are_that_were_read() {
+    // a speck hides the centre of one texel from the light, low over the floor, so that receivers
+    // are moved by a third of a texel
+    let mut scene = floor_and_board(None);
+    scene.meshes.truncate(1);
+    let light = vec3(0.0, 0.5, 0.0);
+    let camera = scene.camera.unwrap();
+    let settings = Settings {
+        size: 256,
+        method: Method::Exact,
+        filter: Filter::Single,
+        bias: Bias::Plane,
+        ..Settings::default()
+    };
+    let frame =
+        |scene: &Scene| Frame::new(scene, light, Vec3::NEG_Y, false, &camera, settings.clone());
+    let origin = light.as_dvec3();
+    let (direction, pitch) = {
+        let frame = frame(&scene).unwrap();
+        let empty = DepthMaps::empty(256, 2, Sampling::Nearest);
+        let truth = truth_of(&frame);
+        let bench = Bench::new(&frame, &empty, &truth);
+        let (map, uv) = bench.place(&bench.point_at(dvec3(0.7, 0.0, 2.0), Some(DVec3::Y)));
+        let texel = (dpsm_disk_to_texture(uv, bench.light.guard) * 256.0).floor();
+        let centre = (texel + Vec2::splat(0.5)) / 256.0;
+        let uv = dpsm_texture_to_disk(centre, bench.light.guard);
+        (bench.direction(uv, map).normalize(), bench.pitch(uv))
+    };
+    let (side, other) = direction.any_orthonormal_pair();
+    let corner =
+        |x: f64, y: f64| (origin + direction + (side * x + other * y) * 0.02 * pitch).as_vec3();
+    let mut speck = square("speck", 1.0, 0.0);
+    speck.positions =
+        vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    scene.meshes.push(speck);
+    let frame = frame(&scene).unwrap();
+    let truth = truth_of(&frame);
+    let maps = cpu::make_maps(&frame).unwrap();
+    let bench = Bench::new(&frame, &maps, &truth);
+    let floor = frame.meshes.iter().find(|(name, _)| name == "floor").unwrap();
+    let triangle = floor.1.clone().next();
+    let mut rng = Rng::with_seed(8);
+    let points = (0..2_000).map(|_| {
+        let mut off = || (rng.f64() * 2.0 - 1.0) * 1.2 * pitch;
+        let ray = direction + side * off() + other * off();
+        let world = origin - ray * (origin.y / ray.y);
+        Point { triangle, ..bench.point_at(world, Some(DVec3::Y)) }
+    });
+    // a fifth of a texel: wrong points are half a texel off and what they are moved by
+    let fifth = Target::Degrees((0.2 * pitch).to_degrees());
+    let sights = [Sight { truth: &truth, origin }; 2];
+    let wrong = Proof::new(sights, fifth, points.collect()).wrong(&bench);
+    assert!(wrong.wrong > 100 && wrong.share > 3.0, "{wrong:?}");
+    assert!(wrong.share < 5.0 * reach(0.0), "{wrong:?}");
 }
