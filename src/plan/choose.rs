@@ -172,7 +172,7 @@ impl Case<'_> {
             let (l, incidence) = (sample.distance, sample.incidence());
             // what is stored may be the neighbour above
             let slack = (dpsm_bias_slack(l, light, quantum, 0.0) + quantum) * range;
-            let within = moved(incidence) * pitch;
+            let within = reach(incidence) * pitch;
             let [gap, behind] = undecided(incidence, pitch).map(|share| share * l + slack);
             sample.gap_within(within) <= gap || sample.behind_within(within) <= behind
         };
