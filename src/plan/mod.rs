@@ -10,7 +10,7 @@
 //! let scene = open("cornell", &Options::default())?;
 //! let request = Request::new(&scene, "0.2deg".parse()?);
 //! let plan = plan(&request)?;
-//! assert!(plan.meets && plan.size < 1024);
+//! assert!(plan.meets && plan.size < 2048);
 //! for choice in &plan.choices {
 //!     println!("{}: {}, {}", choice.what, choice.value, choice.why);
 //! }
