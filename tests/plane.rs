@@ -130,7 +130,7 @@ fn texels_around_the_receiver_are_weighted_by_their_nearness() {
 }
 
 #[test]
-fn what_is_less_than_a_texel_in_front_says_nothing_and_more_is_shadow() {
+fn what_is_less_than_half_a_texel_in_front_says_nothing_and_more_is_shadow() {
     let light = light();
     let p = Vec3::new(1.0, 2.0, 4.0);
     let l = p.length();
@@ -143,8 +143,8 @@ fn what_is_less_than_a_texel_in_front_says_nothing_and_more_is_shadow() {
         };
         assert_eq!(in_front(0.0), (1.0, 1.0));
         assert_eq!(in_front(0.25).1, 1.0, "lit by its own distance");
-        assert_eq!(in_front(0.9), (1.0, 0.0), "nothing is decided");
-        assert_eq!(in_front(1.1), (0.0, 0.0));
+        assert_eq!(in_front(0.45), (1.0, 0.0), "nothing is decided");
+        assert_eq!(in_front(0.55), (0.0, 0.0));
     }
 }
 
@@ -172,7 +172,7 @@ fn undecided_texels_are_left_out_of_the_mean() {
     let at = dpsm_plane(p, dpsm_receiver(p, p), DPSM_PLANE_SHIFT, light, 0.0, 0.0);
     let four = Vec4::new(10.0, 20.0, 0.25, 0.25);
     let [lit, undecided, dark] =
-        [1.0, 1.0 - 0.5 * at.pitch, 0.5].map(|k| k * at.distance - at.near);
+        [1.0, 1.0 - 0.25 * at.pitch, 0.5].map(|k| k * at.distance - at.near);
     // lower left, lower right, upper right, upper left: 3/16, 1/16, 3/16, 9/16
     let share = |stored: [f64; 4]| dpsm_plane_share(at, four, Vec4::from_array(stored));
     assert!((share([lit, lit, dark, lit]) - 13.0 / 16.0).abs() <= 1e-12);

@@ -9,7 +9,7 @@ use crate::render::{Format, guard_band};
 use crate::scalar::bias::dpsm_bias_slack;
 use crate::scalar::float as scalar;
 use crate::scalar::light::DpsmLight;
-use crate::scalar::plane::{DPSM_PLANE_ROUNDING, DPSM_PLANE_SHIFT};
+use crate::scalar::plane::{DPSM_PLANE_DARK, DPSM_PLANE_ROUNDING, DPSM_PLANE_SHIFT};
 
 /// Sizes from what the edges ask for to so many times as much are tried: a finer map sees what is
 /// nearer in front of a receiver.
@@ -92,9 +92,10 @@ pub fn reach(incidence: f64) -> f64 {
 pub fn undecided(incidence: f64, pitch: f64) -> [f64; 2] {
     let cosine = incidence.max(f64::MIN_POSITIVE);
     let sine = (1.0 - cosine * cosine).sqrt();
-    // n . d grows by the move and by a texel; the plane is nearer in inverse proportion
-    let grown = pitch * (1.0 + DPSM_PLANE_SHIFT * sine / cosine) + DPSM_PLANE_ROUNDING / cosine;
-    [1.0 - 1.0 / (1.0 + grown), 1.0 - 1.0 / (1.0 + pitch)]
+    // n . d grows by the move and by half a texel; the plane is nearer in inverse proportion
+    let grown =
+        pitch * (DPSM_PLANE_DARK + DPSM_PLANE_SHIFT * sine / cosine) + DPSM_PLANE_ROUNDING / cosine;
+    [1.0 - 1.0 / (1.0 + grown), 1.0 - 1.0 / (1.0 + DPSM_PLANE_DARK * pitch)]
 }
 
 /// Bytes of a texel.

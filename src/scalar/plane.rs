@@ -9,10 +9,13 @@ use super::maps::Maps;
 use super::paraboloid::{DPSM_SMALLEST, dpsm_disk_to_texture, dpsm_texel_width};
 
 /// How far along its normal a receiver is moved for a single lookup: texels, times the sine.
-pub const DPSM_PLANE_SHIFT: f64 = 0.35;
+pub const DPSM_PLANE_SHIFT: f64 = 0.25;
 
 /// The same where no plane is compared: half a texel's diagonal, rounded up.
 pub const DPSM_PLANE_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 25) as f64;
+
+/// How much nearer than plane and receiver, in texels, a stored depth must be to shadow.
+pub const DPSM_PLANE_DARK: f64 = 0.5;
 
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 pub const DPSM_PLANE_OWN: f64 = 0.3;
@@ -123,7 +126,7 @@ pub fn dpsm_plane_share<T: Float>(at: DpsmPlane<T>, four: Vec4<T>, stored: Vec4<
     let up = step.y * four.w;
     let down = up - step.y;
     let facing = [left + down, right + down, right + up, left + up];
-    let texel = at.pitch * at.cosine;
+    let texel = (T::lit(DPSM_PLANE_DARK) * at.pitch) * at.cosine;
     let near = Vec2::splat(one) - four.zw();
     let weight = [near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y];
     let reach = stored.to_array().map(|stored| stored + at.near);

@@ -86,9 +86,9 @@ fn a_budget_that_is_too_small_gives_the_finest_maps_in_it_and_says_so() {
 #[test]
 fn thin_gaps_ask_for_finer_maps() {
     // of all surfaces, the floor under the board as well: 2 away, where a texel of the map that the
-    // edges ask for is 0.03 wide
+    // edges ask for is 0.03 wide and half of it is not seen
     let mut scene = floor_and_board(None);
-    let [far, near, touching] = [0.5, 0.015, 1e-4].map(|height| {
+    let [far, near, touching] = [0.5, 0.0075, 1e-4].map(|height| {
         for position in &mut scene.meshes[1].positions {
             position.y = height;
         }
@@ -135,13 +135,13 @@ fn thin_gaps_forbid_coarse_formats() {
 
 #[test]
 fn small_gaps_beside_a_receiver_count_as_its_own() {
-    // a texel is 0.02 wide here, and what may decide a third of the allowed angle away
+    // half a texel is 0.01 wide here, and what may decide a third of the allowed angle away
     let wide = [0.1; 2];
     let share = |gap, behind| share(5.0, gap, behind, Format::D32);
     assert!(share(wide, wide) < 1.0);
-    assert_eq!(share([0.025, 0.0], wide), 2.0);
-    assert_eq!(share(wide, [0.025, 0.0]), 2.0);
-    assert!(share([0.04, 0.0], [0.04, 0.0]) < 1.0);
+    assert_eq!(share([0.0125, 0.0], wide), 2.0);
+    assert_eq!(share(wide, [0.0125, 0.0]), 2.0);
+    assert!(share([0.02, 0.0], [0.02, 0.0]) < 1.0);
 }
 
 #[test]

@@ -370,7 +370,7 @@ fn a_shadow_edge_behind_a_wall_that_no_map_holds_counts() {
 #[test]
 fn a_shadow_that_no_ring_meets_is_found_where_the_texels_are_that_were_read() {
     // a speck hides the centre of one texel from the light, low over the floor, so that receivers
-    // are moved by a third of a texel
+    // are moved by up to a quarter of a texel
     let mut scene = floor_and_board(None);
     scene.meshes.truncate(1);
     let light = vec3(0.0, 0.5, 0.0);
