@@ -153,17 +153,20 @@ fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32
 /// h: no division. Near the receiver n . d is the cosine of its incidence and changes by the
 /// plane's lean for each unit of angle (docs/plane.md). Beside a crease, and on a mesh of triangles
 /// smaller than a texel, a texel holds a neighbouring surface a little above the plane: what is
-/// nearer than the plane by less than a texel says nothing, and is left out of the mean. The
+/// nearer than the plane by less than half a texel says nothing, and is left out of the mean. The
 /// receiver is moved along its normal by a part of a texel first, which settles most of those.
 /// dpsm_visibility_plane is the single lookup to use: one gather, a soft edge, nothing to tune.
 /// dpsm_visibility_normal does nearly as well by the hardware's comparison, without a plane.
 
 /// How far along its normal a receiver is moved for a single lookup: texels as they are wide there,
 /// times the sine of its incidence.
-const DPSM_PLANE_SHIFT: f32 = 0.35;
+const DPSM_PLANE_SHIFT: f32 = 0.25;
 
 /// The same where no plane is compared: half a texel's diagonal, rounded up.
 const DPSM_PLANE_DIAGONAL: f32 = 0x1.6a09e8p-1;
+
+/// How much nearer than plane and receiver, in texels, a stored depth must be to shadow.
+const DPSM_PLANE_DARK: f32 = 0.5;
 
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
@@ -247,8 +250,8 @@ fn dpsm_plane(
 ///
 /// point: a sampler that does not compare; p: light-space position; receiver: its dpsm_receiver,
 /// whose normal may be interpolated; quantum, tolerance: as for dpsm_bias_slack. Domain: as for
-/// dpsm_plane, size at least 2. A lit plane is never shadowed by itself. An occluder less than a
-/// texel nearer to the light than plane and receiver is not seen.
+/// dpsm_plane, size at least 2. A lit plane is never shadowed by itself. An occluder less than
+/// half a texel nearer to the light than plane and receiver is not seen.
 fn dpsm_visibility_plane(
     maps: texture_depth_2d_array,
     point: sampler,
@@ -288,7 +291,7 @@ fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
     let facing = vec4<f32>(left + down, right + down, right + up, left + up);
     let reach = stored + at.near;
     let lit = reach * facing >= vec4<f32>(at.height);
-    let texel = at.pitch * at.cosine;
+    let texel = (DPSM_PLANE_DARK * at.pitch) * at.cosine;
     let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
     let near = 1.0 - four.zw;
     let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);

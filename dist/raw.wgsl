@@ -427,7 +427,10 @@ fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
 
 /// How far along its normal a receiver is moved for a single lookup: texels as they are wide there,
 /// times the sine of its incidence.
-const DPSM_PLANE_SHIFT: f32 = 0.35;
+const DPSM_PLANE_SHIFT: f32 = 0.25;
+
+/// How much nearer than plane and receiver, in texels, a stored depth must be to shadow.
+const DPSM_PLANE_DARK: f32 = 0.5;
 
 /// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
 /// share of the distance: 128 eps (docs/plane.md).
@@ -526,7 +529,7 @@ fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
     let facing = vec4<f32>(left + down, right + down, right + up, left + up);
     let reach = stored + at.near;
     let lit = reach * facing >= vec4<f32>(at.height);
-    let texel = at.pitch * at.cosine;
+    let texel = (DPSM_PLANE_DARK * at.pitch) * at.cosine;
     let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
     let near = 1.0 - four.zw;
     let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);

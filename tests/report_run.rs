@@ -152,11 +152,12 @@ fn check(report: &Report, runs: u32) {
         for method in methods {
             assert!(scene.variants.iter().any(|variant| variant.method == method), "{method}");
         }
-        for filter in ["hard", "hardware", "pcf 4 x 4", "disk 16"] {
+        for filter in ["single", "hard", "hardware", "pcf 4 x 4", "disk 16"] {
             assert!(scene.variants.iter().any(|variant| variant.filter == filter), "{filter}");
         }
         // at equal memory a cube has as many texels, to the rounding of its faces
-        let equal = |v: &&Variant| v.method == "hybrid" && v.format == "d32" && v.filter == "hard";
+        let equal =
+            |v: &&Variant| v.method == "hybrid" && v.format == "d32" && v.filter == "single";
         for hybrid in scene.variants.iter().filter(equal).rev().take(1) {
             let as_large = |v: &&Variant| {
                 let ratio = v.texels as f64 / hybrid.texels as f64;

@@ -109,7 +109,9 @@ pub fn choices(
     wanted.extend(all.iter().map(|&size| of(effort, Method::Hybrid, size)));
     let read = Settings { size: middle, ..default_settings(effort) };
     wanted.push(Settings { format: Format::D16, ..read.clone() });
-    wanted.push(Settings { sampling: Sampling::Linear, ..read.clone() });
+    wanted.push(Settings { bias: Bias::TexelCentre, ..read.clone() });
+    let (sampling, bias) = (Sampling::Linear, Bias::Footprint);
+    wanted.push(Settings { sampling, bias, ..read.clone() });
     wanted.push(Settings { filter: Filter::Naive(NAIVE_SIDE), ..read.clone() });
     wanted.push(Settings { filter: Filter::Disk(cone(TAPS)), ..read });
     // a cube's faces at equal worst texel are half as wide; at equal memory six hold as many texels
@@ -208,7 +210,7 @@ fn name(settings: &Settings) -> String {
         method => format!("{} {}", method_name(method), settings.size),
     };
     let (filter, format) = (filter_name(settings), format_name(settings.format));
-    for (part, usual) in [(filter.as_str(), "hard"), (format, "d32")] {
+    for (part, usual) in [(filter.as_str(), "single"), (format, "d32")] {
         if part != usual {
             name = format!("{name} {part}");
         }
@@ -239,6 +241,9 @@ fn format_name(format: Format) -> &'static str {
 /// A filter's option name, and its taps where it has some.
 fn filter_name(settings: &Settings) -> String {
     match (settings.filter, settings.sampling) {
+        (Filter::Single, _) if matches!(settings.bias, Bias::Plane | Bias::Normal) => {
+            "single".into()
+        }
         (Filter::Single, Sampling::Nearest) => "hard".into(),
         (Filter::Single, Sampling::Linear) => "hardware".into(),
         (Filter::Naive(side), _) => format!("pcf {side} x {side}"),

@@ -1190,6 +1190,9 @@ fn dpsm_lookup_biased(
 /// The same where no plane is compared: half a texel's diagonal, rounded up.
 const DPSM_PLANE_DIAGONAL: f32 = 0x1.6a09e8p-1;
 
+/// How much nearer than plane and receiver, in texels, a stored depth must be to shadow.
+const DPSM_PLANE_DARK: f32 = 0.5;
+
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
 
@@ -1290,7 +1293,7 @@ fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
     let facing = vec4<f32>(left + down, right + down, right + up, left + up);
     let reach = stored + at.near;
     let lit = reach * facing >= vec4<f32>(at.height);
-    let texel = at.pitch * at.cosine;
+    let texel = (DPSM_PLANE_DARK * at.pitch) * at.cosine;
     let dark = reach * (max(facing, vec4<f32>(at.cosine)) + texel) < vec4<f32>(at.height);
     let near = 1.0 - four.zw;
     let weight = vec4<f32>(near.x * four.w, four.z * four.w, four.z * near.y, near.x * near.y);
