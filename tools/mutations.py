@@ -325,11 +325,11 @@ MUTATIONS = [
      "seen", "patches_and_dots_of_a_drawn_picture_are_counted"),
     ("src/measure/picture.rs", "error.abs() > threshold", "*error > threshold",
      "seen", "patches_and_dots_of_a_drawn_picture_are_counted"),
-    ("src/measure/picture.rs", "f64::from(bench.visibility(point)) - ", "0.0 * ",
+    ("src/measure/picture.rs", "f64::from(bench.visibility_at(point, pixel)) - ", "0.0 * ",
      "seen", "every_pixel_of_a_picture_is_judged"),
     ("src/measure/soft.rs", ".sqrt() * radius;", " * radius;",
      "soft", "half_plane_covers_the_segment_of_the_light_beyond_its_edge"),
-    ("src/measure/soft.rs", "point.world, point.triangle, 0.0)", "bench.origin * 0.5 + point.world * 0.5, None, 0.0)",
+    ("src/measure/soft.rs", "point.world, point.triangle, inside)", "bench.origin * 0.5 + point.world * 0.5, None, inside)",
      "soft", "half_plane_covers_the_segment_of_the_light_beyond_its_edge"),
     ("src/measure/soft.rs", "if height(from) * centre >= 0.0 {", "if true {",
      "soft", "what_lies_below_the_receivers_plane_is_no_shadow"),
@@ -1366,10 +1366,7 @@ MUTATIONS = [
      "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_kernel_tap"),
     ("wgsl/visibility.wesl", "let disk = dpsm_project(dpsm_flip(p, hemisphere));", "let disk = dpsm_project(p);",
      "accuracy", "no_result_is_outside_its_bound_and_the_adapter_agrees_with_the_ports", "dpsm_lookup"),
-]
-
-
-SCENE = ["--no-default-features", "--features", "scene"    ("src/measure/soft.rs", "sees(from, point.world, point.triangle, inside)", "sees(from, point.world, point.triangle, 0.0)",
+    ("src/measure/soft.rs", "sees(from, point.world, point.triangle, inside)", "sees(from, point.world, point.triangle, 0.0)",
      "soft", "what_lies_inside_the_light_casts_no_shadow"),
     ("src/measure/soft.rs", "inward + (inward * inward", "radius + inward + (inward * inward",
      "soft", "what_lies_inside_the_light_casts_no_shadow"),
@@ -1388,6 +1385,9 @@ SCENE = ["--no-default-features", "--features", "scene"    ("src/measure/soft.rs
     ("src/measure/picture.rs", "bench.true_visibility(&bench.on_triangle(at.triangle, world)) as f32", "1.0",
      "seen", "pictures_by_rays_and_by_maps_differ_at_outlines_alone"),
 ]
+
+
+SCENE = ["--no-default-features", "--features", "scene"]
 # the features that a test file needs; none where it is not listed
 FEATURES = {
     "accuracy": [], "adapter": [], "casting": [], "maps": [], "cube": [], "render": [], "light": [],
