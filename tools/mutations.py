@@ -1218,7 +1218,7 @@ MUTATIONS = [
      "report_run", "ports_report_on_scenes_with_one_hemisphere_and_with_two"),
     ("src/report/variants.rs", "Format::D16 => 2,", "Format::D16 => 4,",
      "report_run", "ports_report_on_scenes_with_one_hemisphere_and_with_two"),
-    ("src/report/variants.rs", "    for (part, usual) in [(filter.as_str(), \"hard\"), (format, \"d32\")] {", "    for (part, usual) in [(filter.as_str(), \"hard\")] {",
+    ("src/report/variants.rs", "    for (part, usual) in [(filter.as_str(), \"single\"), (format, \"d32\")] {", "    for (part, usual) in [(filter.as_str(), \"single\")] {",
      "report_run", "ports_report_on_scenes_with_one_hemisphere_and_with_two"),
     ("src/report/gather.rs", "    pareto::mark(&mut measured);\n", "",
      "report_run", "ports_report_on_scenes_with_one_hemisphere_and_with_two"),
