@@ -265,6 +265,10 @@ fn patches_and_dots_of_a_drawn_picture_are_counted() {
     // a row does not go on in the next one
     let turned = picture_error(&drawn(&["...X", "X...", "...."]), 4, 0.5);
     assert_eq!((turned.wrong, turned.largest_patch, turned.dots), (2, 1, 2));
+    // a patch that is joined at its foot alone, and what is too dark
+    let joined = picture_error(&drawn(&["X.X", "X.X", "XXX"]), 3, 0.5);
+    assert_eq!((joined.wrong, joined.largest_patch), (7, 7));
+    assert_eq!(picture_error(&[Some(-1.0), Some(-0.4)], 2, 0.5).wrong, 1);
     assert_eq!(picture_error(&[], 8, 0.5).wrong_share(), 0.0);
     assert_eq!(picture_error(&drawn(&["X"]), 0, 0.5).wrong, 1);
 }
