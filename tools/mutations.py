@@ -323,7 +323,7 @@ MUTATIONS = [
      "seen", "patches_and_dots_of_a_drawn_picture_are_counted"),
     ("src/measure/picture.rs", "row.saturating_sub(1)..=row + 1", "row..=row + 1",
      "seen", "patches_and_dots_of_a_drawn_picture_are_counted"),
-    ("src/measure/picture.rs", "error.abs() > threshold", "*error > threshold",
+    ("src/measure/picture.rs", "error.abs() > threshold", "error > threshold",
      "seen", "patches_and_dots_of_a_drawn_picture_are_counted"),
     ("src/measure/picture.rs", "f64::from(bench.visibility_at(point, pixel)) - ", "0.0 * ",
      "seen", "every_pixel_of_a_picture_is_judged"),
