@@ -188,6 +188,11 @@ fn bad_settings_are_refused() {
         &with(&["--filter", "disk", "--taps", "0"]),
         &["0 taps", "1 to 1024"],
     );
+    for filter in ["single", "disk", "pcss"] {
+        let linear = ["--filter", filter, "--linear-taps"];
+        let named = format!("--filter {filter} takes no --linear-taps");
+        refused("filter-linear", &with(&linear), &[&named]);
+    }
     let angle = ["--filter", "disk", "--kernel-angle", "90"];
     refused("filter-angle", &with(&angle), &["--kernel-angle 90", "below 90"]);
     let soft = ["--filter", "disk", "--light-size", "0.1"];

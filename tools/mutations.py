@@ -1376,6 +1376,8 @@ MUTATIONS = [
      "seen", "sides_turned_away_from_the_light_are_right_whatever_the_maps_say"),
     ("src/measure/picture.rs", "rotation_at(pixel, shift)", "rotation_at([0, 0], shift)",
      "seen", "kernels_are_judged_with_the_noise_of_their_pixels"),
+    ("src/cli/setup.rs", "(single || gathers) && self.linear_taps", "single && self.linear_taps",
+     "cli", "bad_settings_are_refused"),
     ("src/measure/solid.rs", "corners.is_empty() || !is_closed(&corners)", "corners.is_empty()",
      "seen", "sides_of_solids_are_turned_away_and_no_others"),
     ("src/measure/solid.rs", "true => filled.abs() < WHOLE,", "true => true,",

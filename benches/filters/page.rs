@@ -60,10 +60,10 @@ pub fn write(device: &Device) -> Result<(), Failure> {
          stands for, over {POINTS} points of the picture less those on sides turned away from the \
          light; the seam's are those within five texels of it. The disk narrows towards contacts \
          as that light's penumbra does; mirrored and reprojected kernels do not, and darken what \
-         lies beside the column. The naive filter \
-         stands for no light: its error is that of its penumbra points against a cone as wide as \
-         its texels. It takes the footprint bias of its whole window, and has the guard band of \
-         2 x 2 texels, as it comes from no kernel's. Cost: the camera pass, by tap, as a share of the naive filter's; {}.\n",
+         lies beside the column. The naive filter stands for no light: its error is that of its \
+         penumbra points against a cone as wide as its texels. It takes the footprint bias of its \
+         whole window, and has the guard band of 2 x 2 texels, as it comes from no kernel's. Cost: \
+         the camera pass, by tap, as a share of the naive filter's; {}.\n",
         device.describe()
     );
     let mut base = None;
@@ -92,12 +92,12 @@ pub fn write(device: &Device) -> Result<(), Failure> {
             (uv.length() - 1.0).abs() <= SEAM_TEXELS * texel
         };
         let beside: Vec<Point> = points.iter().filter(at_seam).copied().collect();
-        let soft = |points: &[Point]| Some(measure::soft_error(&bench, points, || {})?.facing.rmse);
-        let [error, seam_error] = match (soft(&points), soft(&beside)) {
-            (Some(all), Some(seam)) => [all, seam],
+        let soft = |points: &[Point]| Some(measure::soft_error(&bench, points, || {})?.facing);
+        let (error, seam_error, seam_points) = match (soft(&points), soft(&beside)) {
+            (Some(all), Some(seam)) => (all.rmse, seam.rmse, seam.points),
             _ => {
                 let error = measure::penumbra_error(&bench, &points, || {});
-                [error.penumbra_rmse, error.seam_rmse]
+                (error.penumbra_rmse, error.seam_rmse, error.seam_points)
             }
         };
         if let Some(picture) = picture {
@@ -113,7 +113,7 @@ pub fn write(device: &Device) -> Result<(), Failure> {
              naive filter's.\n",
             error,
             seam_error,
-            beside.len(),
+            seam_points,
             tap / base.max(f64::MIN_POSITIVE),
         );
     }

@@ -93,7 +93,7 @@ pub struct SetupArguments {
     /// penumbra; by default an eighth of far
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
     nearest: Option<f32>,
-    /// For filters with a kernel: each tap 2 x 2 texels
+    /// For pcf, mirror and reproject: each tap 2 x 2 texels
     #[arg(long)]
     linear_taps: bool,
     /// What keeps surfaces from shadowing themselves in single, hard, hardware and pcf: by default
@@ -330,13 +330,15 @@ impl SetupArguments {
         use FilterName as Name;
         let of_cone = [Name::Disk, Name::Mirror, Name::Reproject].contains(&self.filter_name());
         let single = [Name::Single, Name::Hard, Name::Hardware].contains(&self.filter_name());
+        // their taps read single texels
+        let gathers = [Name::Disk, Name::Pcss].contains(&self.filter_name());
         match () {
             () if given && !of_cone => return unused("--kernel-angle or --kernel-radius"),
             () if soft && self.filter_name() != Name::Pcss => {
                 return unused("--light-size or --nearest");
             }
             () if single && self.taps.is_some() => return unused("--taps"),
-            () if single && self.linear_taps => return unused("--linear-taps"),
+            () if (single || gathers) && self.linear_taps => return unused("--linear-taps"),
             () => {}
         }
         let taps = Taps { count: self.taps.unwrap_or(TAPS), kernel };

@@ -12,8 +12,8 @@ use super::{Bench, Point};
 const WHOLE: f64 = 0.01;
 
 /// Which points lie on a side that is turned away from the light, for certain: their mesh is closed,
-/// each edge of it belongs to two triangles that agree on its outside, and the light is outside of
-/// it; or it is a room, seen from inside, and the light is in it.
+/// its triangles agree on its outside, and the light is outside of it; or it is a room, seen from
+/// inside, and the light is in it.
 pub fn turned_away(bench: &Bench<'_>, points: &[Point]) -> Vec<bool> {
     let frame = bench.frame;
     let all = 0..frame.triangles.len() as u32;
@@ -51,7 +51,8 @@ fn is_sided(bench: &Bench<'_>, range: &Range<u32>) -> bool {
     }
 }
 
-/// True where each edge is passed once in each direction; corners at equal positions are one.
+/// True where each edge is passed as often in one direction as in the other; corners at equal
+/// positions are one.
 fn is_closed(corners: &[[DVec3; 3]]) -> bool {
     let mut passes: HashMap<[[u64; 3]; 2], [u32; 2]> = HashMap::new();
     let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits); // -0 is 0
