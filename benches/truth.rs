@@ -16,7 +16,9 @@ fn main() {
         false => println!("skipped: no file {}", sponza.display()),
     }
     // About as many triangles, built in.
-    measure(&open("brabec-room", &Options { walls: 80 }).expect("it is built in"));
+    measure(
+        &open("brabec-room", &Options { walls: 80, ..Options::default() }).expect("it is built in"),
+    );
 }
 
 fn measure(scene: &Scene) {

@@ -12,7 +12,7 @@ mod settings;
 pub use error::FrameError;
 pub use exposure::{BACKGROUND, BRIGHTEST, CLIPPED, Linear, MOST_SAMPLES, WHITE, exposure, srgb};
 pub use extent::Extent;
-pub(crate) use extent::{common, nearest_of};
+pub(crate) use extent::common;
 pub use filter::rotation_at;
 pub use picture::Picture;
 pub use projection::{Projection, texel};

@@ -63,7 +63,8 @@ fn device() -> Option<(Device, MutexGuard<'static, ()>)> {
 
 /// The built-in scenes that are cast: one with masks and one of solids.
 fn built_in() -> [Scene; 2] {
-    ["fence", "brabec-room"].map(|name| scene::open(name, &Options { walls: 1 }).unwrap())
+    ["fence", "brabec-room"]
+        .map(|name| scene::open(name, &Options { walls: 1, ..Options::default() }).unwrap())
 }
 
 fn frame(scene: &Scene, settings: Settings) -> Result<Frame, FrameError> {

@@ -24,7 +24,7 @@ fn settings() -> Settings {
 }
 
 fn cornell(settings: Settings) -> Frame {
-    let scene = scene::open("cornell", &Options { walls: 1 }).unwrap();
+    let scene = scene::open("cornell", &Options { walls: 1, ..Options::default() }).unwrap();
     let light = scene.default_light();
     let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
     Frame::new(&scene, light.position, Vec3::NEG_Y, false, &camera, settings).unwrap()

@@ -20,8 +20,8 @@ fn settings() -> Settings {
 }
 
 fn scene(meshes: Vec<Mesh>) -> Scene {
-    let (lights, camera, warnings) = Default::default();
-    Scene { name: "made".into(), meshes, lights, camera, warnings }
+    let (origin, lights, camera, warnings) = Default::default();
+    Scene { name: "made".into(), origin, meshes, lights, camera, warnings }
 }
 
 fn frame(meshes: Vec<Mesh>, settings: Settings) -> Result<Frame, FrameError> {
@@ -238,7 +238,7 @@ fn wholly_transparent_meshes_are_not_there_and_wholly_opaque_ones_are_like_unmas
 
 #[test]
 fn camera_sees_through_holes_and_points_lie_on_no_hole() {
-    let scene = open("fence", &Options { walls: 1 }).unwrap();
+    let scene = open("fence", &Options { walls: 1, ..Options::default() }).unwrap();
     let light = scene.default_light();
     let (position, camera) = (light.position, scene.camera.unwrap());
     const SIDE: usize = 384;

@@ -25,7 +25,7 @@ fn settings() -> Settings {
 }
 
 fn room(walls: u32, settings: Settings) -> Frame {
-    let scene = scene::open("brabec-room", &Options { walls }).unwrap();
+    let scene = scene::open("brabec-room", &Options { walls, ..Options::default() }).unwrap();
     let (light, camera) = (scene.default_light(), scene.camera.unwrap());
     Frame::new(&scene, light.position, Vec3::NEG_Y, false, &camera, settings).unwrap()
 }
@@ -58,6 +58,7 @@ fn silhouette_has_as_many_shades_as_samples_and_their_mean_is_its_area() {
     let floor = square("floor", 0.0, 0.0, 1.0);
     let scene = Scene {
         name: "made".into(),
+        origin: Default::default(),
         meshes: vec![floor],
         lights: Vec::new(),
         camera: None,
@@ -284,8 +285,9 @@ fn coarse_sphere(terminator: bool) -> Frame {
         albedo: Vec3::splat(0.5),
         ..Mesh::default()
     };
-    let (lights, camera, warnings) = Default::default();
-    let scene = Scene { name: "made".into(), meshes: vec![sphere], lights, camera, warnings };
+    let (origin, lights, camera, warnings) = Default::default();
+    let scene =
+        Scene { name: "made".into(), origin, meshes: vec![sphere], lights, camera, warnings };
     let camera =
         Camera { eye: vec3(0.0, 0.0, 4.0), target: Vec3::ZERO, up: Vec3::Y, vertical_fov: 0.6 };
     let settings = Settings { size: 1024, image: [320, 320], samples: 1, terminator, ..settings() };
@@ -329,7 +331,7 @@ fn coarse_sphere_has_a_smooth_shadow_where_the_terminator_is_moved() {
 
 #[test]
 fn flat_meshes_look_the_same_wherever_the_shadow_is_tested() {
-    let scene = scene::open("cornell", &Options { walls: 1 }).unwrap();
+    let scene = scene::open("cornell", &Options { walls: 1, ..Options::default() }).unwrap();
     let (light, camera) = (scene.default_light().position, scene.camera.unwrap());
     let [moved, unmoved] = [true, false].map(|terminator| {
         let settings = Settings { terminator, ..settings() };

@@ -22,7 +22,8 @@ impl Place {
     }
 
     pub fn built_in(name: &str, walls: u32) -> Self {
-        let scene = scene::open(name, &Options { walls }).expect("a built-in scene");
+        let scene =
+            scene::open(name, &Options { walls, ..Options::default() }).expect("a built-in scene");
         Self::of(scene, &format!("{name}, {walls} x {walls} walls"))
     }
 

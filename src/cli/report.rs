@@ -77,7 +77,7 @@ pub struct ReportArguments {
 impl ReportArguments {
     /// All built-in scenes.
     pub fn all(folder: &Path) -> Self {
-        let Options { walls } = Options::default();
+        let Options { walls, .. } = Options::default();
         Self {
             scenes: Vec::new(),
             folder: folder.into(),
@@ -115,7 +115,7 @@ pub fn subjects(arguments: &ReportArguments) -> Result<Vec<Subject>, CliError> {
         if asked[..place].contains(wanted) {
             return Err(CliError::Usage(format!("{wanted} is named twice; name each scene once")));
         }
-        let scene = scene::open(wanted, &Options { walls: arguments.walls })?;
+        let scene = scene::open(wanted, &Options { walls: arguments.walls, ..Options::default() })?;
         for warning in &scene.warnings {
             eprintln!("dpsm: {warning}");
         }

@@ -440,7 +440,7 @@ impl SetupArguments {
         let mut light = scene.default_light();
         let light_of_plan = plan.as_ref().and_then(|plan| plan.lights.first());
         match self.light.or(light_of_plan.map(|light| Vec3::from_array(*light))) {
-            Some(position) => light = Light { position, axis: None, ..light },
+            Some(position) => light = Light { position, axis: None, cone: None, ..light },
             None if scene.lights.len() > 1 => {
                 eprintln!("dpsm: the scene has {} lights; using the first", scene.lights.len());
             }
@@ -468,7 +468,7 @@ impl SetupArguments {
 
 /// Opens a scene; its warnings go to stderr.
 pub fn open(name: &str, walls: u32) -> Result<Scene, CliError> {
-    let scene = scene::open(name, &Options { walls })?;
+    let scene = scene::open(name, &Options { walls, ..Options::default() })?;
     for warning in &scene.warnings {
         eprintln!("dpsm: {warning}");
     }

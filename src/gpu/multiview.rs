@@ -81,8 +81,8 @@ pub fn try_views(device: &Device) -> Result<(), GpuError> {
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     };
-    let (name, lights, camera, warnings) = Default::default();
-    let scene = Scene { name, meshes: vec![mesh], lights, camera, warnings };
+    let (name, origin, lights, camera, warnings) = Default::default();
+    let scene = Scene { name, origin, meshes: vec![mesh], lights, camera, warnings };
     let camera = Camera { eye: Vec3::ZERO, target: Vec3::Z, up: Vec3::Y, vertical_fov: 1.0 };
     let settings = Settings {
         size: 64,

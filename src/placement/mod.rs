@@ -31,6 +31,8 @@ impl Scene {
             position: self.light_position(),
             axis: None,
             color: Vec3::ONE,
+            cone: None,
+            range: None,
         })
     }
 

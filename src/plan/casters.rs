@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Vec3};
 
-use crate::render::{SMALLEST, View, nearest_of};
-use crate::scene::{Mesh, Scene};
+use crate::render::{SMALLEST, View};
+use crate::scene::{Mesh, Scene, nearest_of};
 
 /// Coordinates, of the largest one, by which a vertex may be behind a wall that it stands on: they
 /// are f32.

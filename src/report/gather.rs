@@ -64,7 +64,7 @@ impl Subject {
     /// A scene with its own light, or one that is given, and its own camera.
     pub fn new(scene: Scene, light: Option<Vec3>) -> Self {
         let own = scene.default_light();
-        let light = light.map_or(own, |position| Light { position, axis: None, ..own });
+        let light = light.map_or(own, |position| Light { position, axis: None, cone: None, ..own });
         let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
         Self { name: scene.name.clone(), scene, light, camera }
     }
@@ -80,7 +80,7 @@ impl Subject {
         settings: &Settings,
         around: Option<(Vec3, bool)>,
     ) -> Result<Frame, FrameError> {
-        let Light { position, axis, color } = self.light;
+        let Light { position, axis, color, .. } = self.light;
         let (axis, one) = around.unwrap_or((axis.unwrap_or(Vec3::NEG_Y), axis.is_some()));
         let frame = Frame::new(&self.scene, position, axis, one, &self.camera, settings.clone())?;
         Ok(Frame { color, ..frame })

@@ -36,6 +36,7 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
     }
     let mut scene = Scene {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into(),
+        origin: glam::DVec3::ZERO,
         meshes: Vec::new(),
         lights: Vec::new(),
         camera: None,

@@ -15,14 +15,16 @@
 
 mod load;
 mod mask;
+mod nearest;
 mod procedural;
 mod shapes;
 
 use std::path::{Path, PathBuf};
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 pub use mask::Mask;
+pub(crate) use nearest::nearest_of;
 pub use procedural::{BUILT_IN, crowd, dozen};
 
 /// A triangle mesh in world space.
@@ -64,6 +66,20 @@ pub struct Light {
     pub axis: Option<Vec3>,
     /// Linear RGB, the largest component is 1.
     pub color: Vec3,
+    /// The cone that a spot lights; `None` for all directions, or all of the hemisphere.
+    pub cone: Option<Cone>,
+    /// Metres from the light to where it lights nothing any more, above 0; `None` for no limit.
+    pub range: Option<f32>,
+}
+
+/// How a spot fades: full light up to the inner angle, none from the outer one on. Both are radians
+/// from [`Light::axis`], which is `Some`; 0 <= `inner` < `outer` <= pi / 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Where the light begins to fade.
+    pub inner: f32,
+    /// Where none is left.
+    pub outer: f32,
 }
 
 /// A perspective camera.
@@ -84,6 +100,10 @@ pub struct Camera {
 pub struct Scene {
     /// The built-in name, or the file's name without its extension.
     pub name: String,
+    /// Where the scene's own origin lies in the coordinates of the file, metres. All positions here
+    /// are the file's less this one, rounded once from f64. Zero for built-in scenes and for files
+    /// whose coordinates f32 holds well; see [`Options::around`].
+    pub origin: DVec3,
     /// At least one triangle in all.
     pub meshes: Vec<Mesh>,
     /// Empty when the file has none; see [`Scene::default_light`].
@@ -146,11 +166,15 @@ impl Scene {
 }
 
 /// What [`open`] may vary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Each wall, floor and ceiling of a built-in scene is a grid of `walls` x `walls` quads:
     /// 1 to [`Options::MAX_WALLS`], 8 in Brabec's paper and by default. Files and `hills` ignore it.
     pub walls: u32,
+    /// The point, in the file's coordinates, around which positions should be most exact: the
+    /// light's. By default the file's first light with a position, else the middle of its bounds.
+    /// Built-in scenes ignore it.
+    pub around: Option<DVec3>,
 }
 
 impl Options {
@@ -160,7 +184,7 @@ impl Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { walls: 8 }
+        Self { walls: 8, around: None }
     }
 }
 

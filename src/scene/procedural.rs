@@ -6,7 +6,7 @@ mod fence;
 mod room;
 mod rough;
 
-use glam::{Vec3, vec3};
+use glam::{DVec3, Vec3, vec3};
 
 use super::shapes::{prism, quads};
 use super::{Camera, Light, Mesh, Options, Scene, SceneError};
@@ -84,12 +84,13 @@ fn scene(
     axis: Option<Vec3>,
     camera: Camera,
 ) -> Scene {
-    lit(name, meshes, Light { position, axis, color: Vec3::ONE }, camera)
+    lit(name, meshes, Light { position, axis, color: Vec3::ONE, cone: None, range: None }, camera)
 }
 
 fn lit(name: &str, meshes: Vec<Mesh>, light: Light, camera: Camera) -> Scene {
     Scene {
         name: name.into(),
+        origin: DVec3::ZERO,
         meshes,
         lights: vec![light],
         camera: Some(camera),

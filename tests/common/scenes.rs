@@ -20,7 +20,7 @@ pub fn settings() -> Settings {
 
 /// Brabec's room around its own light.
 pub fn room(walls: u32, settings: Settings) -> Frame {
-    let scene = scene::open("brabec-room", &Options { walls }).unwrap();
+    let scene = scene::open("brabec-room", &Options { walls, ..Options::default() }).unwrap();
     let light = scene.default_light();
     let camera = scene.camera.unwrap();
     Frame::new(&scene, light.position, Vec3::NEG_Y, false, &camera, settings).unwrap()
@@ -74,6 +74,7 @@ pub fn half_covered(settings: Settings) -> Frame {
 pub fn frame_of(meshes: Vec<Mesh>, settings: Settings) -> Frame {
     let scene = Scene {
         name: "made".into(),
+        origin: Default::default(),
         meshes,
         lights: Vec::new(),
         camera: None,

@@ -11,7 +11,7 @@ use crate::support::{BAKE, EVAL, MEASURE, PROBE, RENDER, Writes, adapter, conten
 
 /// A small frame with a view of each map.
 pub fn frame(method: Method) -> Frame {
-    let scene = scene::open("seam-box", &Options { walls: 1 }).unwrap();
+    let scene = scene::open("seam-box", &Options { walls: 1, ..Options::default() }).unwrap();
     let position = scene.default_light().position;
     let camera = scene.camera.unwrap_or_else(|| scene.default_camera(position));
     let settings =

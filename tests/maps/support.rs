@@ -27,7 +27,7 @@ pub fn settings() -> Settings {
 
 /// A built-in scene with walls of two triangles.
 pub fn built_in(name: &str) -> Scene {
-    scene::open(name, &Options { walls: 1 }).unwrap()
+    scene::open(name, &Options { walls: 1, ..Options::default() }).unwrap()
 }
 
 /// A scene made by others, if this checkout lies beside some.
@@ -42,8 +42,8 @@ pub fn shared(name: &str) -> Option<Scene> {
 
 /// A scene of these meshes alone.
 pub fn scene_of(meshes: Vec<Mesh>) -> Scene {
-    let (lights, camera, warnings) = Default::default();
-    Scene { name: "made".into(), meshes, lights, camera, warnings }
+    let (origin, lights, camera, warnings) = Default::default();
+    Scene { name: "made".into(), origin, meshes, lights, camera, warnings }
 }
 
 /// A frame with an omnidirectional light, not turned.

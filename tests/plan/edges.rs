@@ -267,7 +267,7 @@ fn a_local_search_finds_an_axis_between_the_named_ones() {
 #[test]
 fn a_closed_room_fills_both_maps() {
     // the walls alone: the solids inside cover them
-    let mut scene = open("seam-box", &Options { walls: 64 }).unwrap();
+    let mut scene = open("seam-box", &Options { walls: 64, ..Options::default() }).unwrap();
     scene.meshes.truncate(6);
     let kept = vec![true; scene.meshes.len()];
     let seen = cost::seen(&scene, &kept, scene.default_light().position.as_dvec3());

@@ -42,8 +42,15 @@ fn floor_and_board(lid: Option<f32>) -> Scene {
     meshes.extend(lid.map(|y| square("lid", 0.5, y)));
     Scene {
         name: "board".into(),
+        origin: Default::default(),
         meshes,
-        lights: vec![Light { position: vec3(0.1, 2.0, 0.2), axis: None, color: Vec3::ONE }],
+        lights: vec![Light {
+            position: vec3(0.1, 2.0, 0.2),
+            axis: None,
+            color: Vec3::ONE,
+            cone: None,
+            range: None,
+        }],
         camera: Some(Camera {
             eye: vec3(3.0, 1.6, 3.0),
             target: vec3(0.0, 0.2, 0.0),

@@ -350,7 +350,7 @@ fn names_with_typing_errors_get_a_suggestion() {
 #[test]
 fn impossible_walls_are_an_error() {
     for walls in [0, Options::MAX_WALLS + 1] {
-        let error = open("cornell", &Options { walls }).unwrap_err();
+        let error = open("cornell", &Options { walls, ..Options::default() }).unwrap_err();
         assert!(matches!(error, SceneError::Walls { .. }));
         assert_eq!(error.to_string(), format!("walls of {walls} x {walls} quads: use 1 to 1024"));
     }

@@ -165,7 +165,13 @@ fn point_lights_are_omnidirectional_and_spots_hemispherical() {
         {"type": "directional"}, {"type": "point", "color": [0, 0, 0]}]}}"#;
     let scene = read(&file("lights.glb", glb(&json(STRIP, &nodes, more))));
     assert_valid(&scene);
-    let point = Light { position: vec3(1.0, 2.0, 3.0), axis: None, color: vec3(1.0, 0.5, 0.0) };
+    let point = Light {
+        position: vec3(1.0, 2.0, 3.0),
+        axis: None,
+        color: vec3(1.0, 0.5, 0.0),
+        cone: None,
+        range: None,
+    };
     assert_eq!(scene.lights.len(), 2);
     assert_eq!(scene.lights[0], point);
     assert_eq!(scene.default_light(), point);

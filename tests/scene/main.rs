@@ -18,7 +18,7 @@ use dpsm::scene::{BUILT_IN, Camera, Mesh, Options, Scene, open};
 use glam::{DVec3, Vec3};
 
 fn built_in(name: &str, walls: u32) -> Scene {
-    open(name, &Options { walls }).unwrap()
+    open(name, &Options { walls, ..Options::default() }).unwrap()
 }
 
 fn every_built_in() -> impl Iterator<Item = Scene> {

@@ -32,8 +32,8 @@ fn ball(center: Vec3, inside_out: bool) -> Scene {
         albedo: Vec3::ONE,
         ..Mesh::default()
     };
-    let (lights, camera, warnings) = Default::default();
-    Scene { name: "ball".into(), meshes: vec![mesh], lights, camera, warnings }
+    let (origin, lights, camera, warnings) = Default::default();
+    Scene { name: "ball".into(), origin, meshes: vec![mesh], lights, camera, warnings }
 }
 
 /// Where a point is in a square image, from -1 to 1; the distance along the view comes last.

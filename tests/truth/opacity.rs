@@ -37,8 +37,8 @@ fn opaque(x: f64, z: f64) -> Option<bool> {
 }
 
 fn scene(meshes: Vec<Mesh>) -> Scene {
-    let (lights, camera, warnings) = Default::default();
-    Scene { name: "squares".into(), meshes, lights, camera, warnings }
+    let (origin, lights, camera, warnings) = Default::default();
+    Scene { name: "squares".into(), origin, meshes, lights, camera, warnings }
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn holes_inside_triangles_tear_no_edge_open() {
 
 #[test]
 fn bulk_forms_copies_and_wholly_opaque_triangles_agree() {
-    let scene = open("fence", &Options { walls: 1 }).unwrap();
+    let scene = open("fence", &Options { walls: 1, ..Options::default() }).unwrap();
     let light = scene.default_light().position.as_dvec3();
     let truth = Truth::from(&scene);
     let copy = truth.clone();

@@ -101,7 +101,8 @@ fn of_coincident_triangles_the_lowest_index_is_hit() {
 
 #[test]
 fn a_scene_is_searched_as_its_triangles_in_order() {
-    let scene = dpsm::scene::open("cornell", &dpsm::scene::Options { walls: 3 }).unwrap();
+    let scene =
+        dpsm::scene::open("cornell", &dpsm::scene::Options { walls: 3, around: None }).unwrap();
     let triangles: Vec<_> = scene.triangles().map(|t| t.map(|corner| corner.as_dvec3())).collect();
     let light = scene.default_light().position.as_dvec3();
     let mut rng = rng("scene");

@@ -216,6 +216,8 @@ fn light(
         position,
         axis,
         color: (color / brightest).max(Vec3::ZERO),
+        cone: None,
+        range: None,
     })
 }
 

@@ -44,7 +44,7 @@ pub(super) fn hills() -> Vec<Mesh> {
 
 /// Beside the hills, so that they shadow each other.
 pub(super) fn hills_light() -> Light {
-    Light { position: vec3(-2.6, 2.4, 1.0), axis: None, color: Vec3::ONE }
+    Light { position: vec3(-2.6, 2.4, 1.0), axis: None, color: Vec3::ONE, cone: None, range: None }
 }
 
 /// Looks over the hills with the light on its left.
@@ -75,7 +75,7 @@ pub(super) fn boulder(walls: u32) -> Vec<Mesh> {
 /// As far from the boulder as the scene is wide, diagonally above.
 pub(super) fn boulder_light() -> Light {
     let position = BOULDER[1] * Vec3::Y + SIDE * Vec3::ONE.normalize();
-    Light { position, axis: None, color: Vec3::ONE }
+    Light { position, axis: None, color: Vec3::ONE, cone: None, range: None }
 }
 
 /// Shows the lit side, the dark side and the shadow on the ground.
