@@ -69,7 +69,7 @@ impl Extent {
         let distance = p.length();
         let radius = self.radius + 1e-5 * (distance + self.radius);
         let between =
-            distance - radius <= light.far.into() && distance + radius >= light.near.into();
+            distance - radius <= f64::from(light.far) && distance + radius >= f64::from(light.near);
         let Some(hemisphere) = hemisphere else { return between };
         let angle = (dpsm_flip(p, hemisphere).z / distance).clamp(-1.0, 1.0).acos();
         let border = dpsm_caster_border(f64::from(light.guard)).acos();

@@ -1,21 +1,24 @@
-//! Files: which reader, and the repairs that every format's meshes go through.
+//! Files: which reader, where the scene's origin is, and the repairs that every format's meshes go
+//! through.
 
-mod alpha;
+mod draft;
 mod gltf;
+mod kind;
 mod named;
 mod obj;
-mod primitive;
+mod origin;
+mod text;
 
-use std::collections::{BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec3};
 
-use super::{Mask, Mesh, Scene, SceneError};
+use super::{Camera, Light, Options, Scene, SceneError};
+use draft::Draft;
 
 /// Reads a `.obj`, `.gltf` or `.glb` file.
-pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
+pub(super) fn read(path: &Path, options: &Options) -> Result<Scene, SceneError> {
     let path_buf = || path.to_path_buf();
     if path.is_dir() {
         return Err(SceneError::Directory { path: path_buf() });
@@ -34,17 +37,14 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
     if bytes.is_empty() {
         return Err(SceneError::EmptyFile { path: path_buf() });
     }
-    let mut scene = Scene {
-        name: path.file_stem().unwrap_or_default().to_string_lossy().into(),
-        origin: glam::DVec3::ZERO,
-        meshes: Vec::new(),
-        lights: Vec::new(),
-        camera: None,
-        warnings: Vec::new(),
-    };
-    // The arithmetic of gltf on offsets and lengths, and of tobj on indices, is unchecked.
-    let found = catch_unwind(AssertUnwindSafe(|| reader(path, &bytes, &mut scene)))
+    kind::check(path, &bytes, &extension)?;
+    // The decoders of images and of compressed meshes are others' code, which a broken file may
+    // bring to panic.
+    let mut contents = catch_unwind(AssertUnwindSafe(|| reader(path, &bytes)))
         .unwrap_or_else(|_| Err(malformed(path, "its offsets or indices are impossible")))?;
+    let found = std::mem::take(&mut contents.found);
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into();
+    let scene = contents.finish(name, options.around);
     if scene.triangle_count() == 0 {
         let found = [&[found], &scene.warnings[..]].concat().join("; ");
         return Err(SceneError::Empty { path: path_buf(), found });
@@ -53,10 +53,61 @@ pub(super) fn read(path: &Path) -> Result<Scene, SceneError> {
 }
 
 fn malformed(path: &Path, what: impl ToString) -> SceneError {
-    SceneError::Malformed {
-        path: path.to_path_buf(),
-        // The gltf crate ends a list of faults with a separator.
-        what: what.to_string().trim_end_matches([';', ' ']).into(),
+    SceneError::Malformed { path: path.to_path_buf(), what: what.to_string() }
+}
+
+/// What a file holds, in its own coordinates and in f64, as node transforms may take a mesh millions
+/// of metres away.
+#[derive(Default)]
+struct Contents {
+    drafts: Vec<Draft>,
+    /// Their positions, and the rest of them.
+    lights: Vec<(DVec3, Light)>,
+    camera: Option<View>,
+    warnings: Vec<String>,
+    /// What the file has, in words, for one without triangles.
+    found: String,
+}
+
+/// A camera before the scene's origin is known.
+struct View {
+    eye: DVec3,
+    forward: Vec3,
+    up: Vec3,
+    vertical_fov: f32,
+}
+
+impl Contents {
+    fn finish(self, name: String, around: Option<DVec3>) -> Scene {
+        let origin = origin::of(&self, around);
+        let Self { drafts, lights, camera, mut warnings, .. } = self;
+        let meshes =
+            drafts.into_iter().filter_map(|draft| draft.finish(origin, &mut warnings)).collect();
+        let (lights, lost): (Vec<Light>, Vec<Light>) = lights
+            .into_iter()
+            .map(|(at, light)| Light { position: (at - origin).as_vec3(), ..light })
+            .partition(|light| light.position.is_finite());
+        if !lost.is_empty() {
+            warnings.push(format!("{} lights beyond the range of numbers skipped", lost.len()));
+        }
+        let camera = camera.and_then(|view| {
+            let camera = view.at(origin);
+            if camera.is_none() {
+                warnings.push("a camera without a usable perspective was skipped".into());
+            }
+            camera
+        });
+        Scene { name, origin, meshes, lights, camera, warnings }
+    }
+}
+
+impl View {
+    fn at(self, origin: DVec3) -> Option<Camera> {
+        let Self { eye, forward, up, vertical_fov } = self;
+        let eye = (eye - origin).as_vec3();
+        let target = eye + forward;
+        // So far from the origin that a metre is lost, the target would be the eye.
+        (target.is_finite() && target != eye).then_some(Camera { eye, target, up, vertical_fov })
     }
 }
 
@@ -68,136 +119,9 @@ fn albedo(color: [f32; 3]) -> Vec3 {
     Vec3::from(color.map(usable))
 }
 
-/// A triangle's corner: indices of its position, normal and texture coordinates, counted from zero,
-/// unchecked.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Corner {
-    position: u32,
-    normal: Option<u32>,
-    texcoord: Option<u32>,
-}
-
-type Triangle = [Corner; 3];
-
-/// A mesh as a file gives it; nothing about it is certain.
-struct Draft<'a> {
-    name: String,
-    positions: &'a [Vec3],
-    normals: &'a [Vec3],
-    texcoords: &'a [Vec2],
-    triangles: Vec<Triangle>,
-    albedo: Vec3,
-    mask: Option<Mask>,
-}
-
-/// Vertices that cannot be used, and how many triangles they cost.
-#[derive(Default)]
-struct Dropped {
-    vertices: BTreeSet<u32>,
-    triangles: usize,
-}
-
-impl Draft<'_> {
-    /// Drops the triangles that cannot be used, gives every corner a unit normal, and says so;
-    /// `None` if no triangle is left. Corners without a normal get their face's, as the glTF
-    /// specification asks (3.7.2.1).
-    fn finish(self, warnings: &mut Vec<String>) -> Option<Mesh> {
-        let mut mesh = Mesh {
-            name: self.name,
-            positions: Vec::new(),
-            normals: Vec::new(),
-            triangles: Vec::with_capacity(self.triangles.len()),
-            albedo: self.albedo,
-            texcoords: Vec::new(),
-            mask: self.mask,
-        };
-        let (mut out_of_range, mut non_finite) = (Dropped::default(), Dropped::default());
-        let (mut replaced_normals, mut unusable_texcoords) = (0, 0);
-        let mut known = HashMap::new();
-        for corners in self.triangles {
-            let points = corners.map(|corner| at(self.positions, corner.position));
-            let [Some(a), Some(b), Some(c)] = points else {
-                out_of_range.add(corners, |i| at(self.positions, i).is_none());
-                continue;
-            };
-            if ![a, b, c].iter().all(|point| point.is_finite()) {
-                let bad = |i| at(self.positions, i).is_some_and(|point| !point.is_finite());
-                non_finite.add(corners, bad);
-                continue;
-            }
-            let mut add = |corner: Corner, position: Vec3, normal: Vec3| {
-                mesh.positions.push(position);
-                mesh.normals.push(normal);
-                if mesh.mask.is_some() {
-                    let texcoord = corner.texcoord.and_then(|i| at(self.texcoords, i));
-                    let texcoord = texcoord.unwrap_or(Vec2::NAN);
-                    unusable_texcoords += u32::from(!texcoord.is_finite());
-                    mesh.texcoords.push(texcoord);
-                }
-                mesh.positions.len() as u32 - 1
-            };
-            let triangle = [(corners[0], a), (corners[1], b), (corners[2], c)];
-            mesh.triangles.push(triangle.map(|(corner, position)| {
-                let given = corner.normal.map(|i| at(self.normals, i).and_then(unit));
-                if let Some(Some(normal)) = given {
-                    *known.entry(corner).or_insert_with(|| add(corner, position, normal))
-                } else {
-                    replaced_normals += u32::from(given.is_some());
-                    add(corner, position, face_normal(a, b, c))
-                }
-            }));
-        }
-
-        let mut warn = |what: String| warnings.push(format!("mesh `{}`: {what}", mesh.name));
-        if let Some(first) = non_finite.vertices.first() {
-            warn(format!(
-                "{} non-finite vertices (first: number {} of the mesh, from 0), {} triangles dropped",
-                non_finite.vertices.len(),
-                first,
-                non_finite.triangles
-            ));
-        }
-        if let Some(first) = out_of_range.vertices.first() {
-            warn(format!(
-                "{} vertex indices out of range (first: {}, of {} vertices), {} triangles dropped",
-                out_of_range.vertices.len(),
-                first,
-                self.positions.len(),
-                out_of_range.triangles
-            ));
-        }
-        if replaced_normals > 0 {
-            warn(format!("{replaced_normals} corners have no usable normal and got their face's"));
-        }
-        if unusable_texcoords > 0 {
-            let what = "vertices have no usable texture coordinates: opaque around them";
-            warn(format!("{unusable_texcoords} {what}"));
-        }
-        (!mesh.triangles.is_empty()).then_some(mesh)
-    }
-}
-
-impl Dropped {
-    fn add(&mut self, corners: Triangle, bad: impl Fn(u32) -> bool) {
-        let vertices = corners.map(|corner| corner.position);
-        self.vertices.extend(vertices.into_iter().filter(|&i| bad(i)));
-        self.triangles += 1;
-    }
-}
-
-fn at<T: Copy>(items: &[T], index: u32) -> Option<T> {
-    items.get(index as usize).copied()
-}
-
 /// `None` for a vector without a direction: zero or not finite.
-fn unit(v: Vec3) -> Option<Vec3> {
-    // In f64, where the squares of all finite f32 are finite and not zero.
-    Some(v.as_dvec3().try_normalize()?.as_vec3())
-}
-
-/// Up for a triangle without area, whose normal nobody can see.
-fn face_normal(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
-    let [a, b, c] = [a, b, c].map(|point| point.as_dvec3());
-    let normal = (b - a).cross(c - a).try_normalize();
-    normal.map_or(Vec3::Y, |normal| normal.as_vec3())
+fn unit(v: DVec3) -> Option<Vec3> {
+    // Scaled first, as squares of the smallest and largest f64 are no use.
+    let v = v / v.abs().max_element();
+    Some(v.try_normalize()?.as_vec3())
 }

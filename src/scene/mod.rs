@@ -200,7 +200,7 @@ pub fn open(name_or_path: &str, options: &Options) -> Result<Scene, SceneError> 
     let path = Path::new(name_or_path);
     let looks_like_a_path = path.extension().is_some() || path.components().nth(1).is_some();
     if looks_like_a_path || path.exists() {
-        load::read(path)
+        load::read(path, options)
     } else {
         Err(SceneError::UnknownName {
             name: name_or_path.into(),
@@ -257,13 +257,13 @@ pub enum SceneError {
     )]
     Buffer { path: PathBuf, uri: String, what: String },
     #[error(
-        "`{path}` needs the image `{image}` for the mask of mesh `{mesh}`: {what}; put a PNG or JPEG where the file expects it, or export a .glb, which holds its images"
+        "`{path}` needs the image `{image}` for the mask of mesh `{mesh}`: {what}; put a PNG, JPEG or WebP where the file expects it, or export a .glb, which holds its images"
     )]
     Image { path: PathBuf, image: String, mesh: String, what: String },
-    #[error(
-        "`{path}` requires the glTF extension `{extension}`, which is not supported; export it without"
-    )]
-    RequiredExtension { path: PathBuf, extension: String },
+    #[error("`{path}` requires the glTF extension `{extension}`, which is not supported; {remedy}")]
+    RequiredExtension { path: PathBuf, extension: String, remedy: &'static str },
+    #[error("`{path}` is {kind}, not {expected}; {remedy}")]
+    OtherKind { path: PathBuf, kind: &'static str, expected: &'static str, remedy: &'static str },
     #[error("`{path}` has no triangles, only {found}; export its meshes as triangles")]
     Empty { path: PathBuf, found: String },
 }

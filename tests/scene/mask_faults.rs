@@ -9,8 +9,7 @@ fn images_that_cannot_be_had_are_named_with_the_remedy() {
     let message = File { image: r#""uri": "gone.png""#, ..masked(&[]) }.error("gone.glb");
     let start = "`gone.glb` needs the image `gone.png` for the mask of mesh `x`: ";
     assert!(message.starts_with(start), "{message}");
-    let end =
-        "; put a PNG or JPEG where the file expects it, or export a .glb, which holds its images";
+    let end = "; put a PNG, JPEG or WebP where the file expects it, or export a .glb, which holds its images";
     assert!(message.ends_with(end), "{message}");
 
     let no_picture = masked(b"no picture").error("text.glb");

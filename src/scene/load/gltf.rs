@@ -1,237 +1,260 @@
 //! glTF 2.0, text or binary: triangles, punctual lights and the first perspective camera.
+//!
+//! The reader is our own, as the kept crates type and check a whole document before they give any of
+//! it, have transforms in f32, and read neither sparse accessors without a view, nor quantised
+//! positions, nor copies of a mesh.
+
+mod accessor;
+mod buffers;
+mod container;
+mod document;
+#[cfg_attr(not(feature = "draco"), path = "gltf/no_draco.rs")]
+mod draco;
+mod extensions;
+mod fault;
+mod images;
+mod instances;
+mod light;
+mod material;
+mod meshopt;
+mod morph;
+mod nodes;
+mod primitive;
+mod skin;
 
 use std::collections::HashMap;
-use std::f32::consts::PI;
 use std::path::Path;
 
-use ::gltf::camera::Projection;
-use ::gltf::json::validation::Checked;
-use ::gltf::khr_lights_punctual::Kind;
-use ::gltf::material::AlphaMode;
-use ::gltf::{Document, Gltf, Node, Semantic, buffer};
-use glam::{Mat4, Vec3};
+use glam::DAffine3;
+use serde::Deserialize;
+use serde_json::value::RawValue;
 
-use super::alpha::Images;
-use super::{malformed, named, primitive, unit};
+use super::Contents;
+use crate::scene::SceneError;
 use crate::scene::mask::Coverage;
-use crate::scene::{Camera, Light, Scene, SceneError};
+use accessor::Accessors;
+use buffers::Buffers;
+use document::{Document, of_text};
+use fault::Fault;
+use images::Images;
+use light::Found;
+use material::{AlphaMode, Material};
+use nodes::{Node, Placed, Tree};
+use primitive::{Around, Other, Primitive};
 
-/// Adds the file's content and warnings to the scene; returns what it found, in words.
-pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<String, SceneError> {
-    let file = Gltf::from_slice_without_validation(bytes).map_err(|e| malformed(path, e))?;
-    let mut json = file.document.into_json();
-    for extension in std::mem::take(&mut json.extensions_required) {
-        if ["KHR_materials_", "KHR_texture_", "EXT_texture_"]
-            .iter()
-            .any(|appearance| extension.starts_with(appearance))
-        {
-            scene.warnings.push(format!("extension `{extension}` ignored"));
-        } else if extension != "KHR_lights_punctual" {
-            return Err(SceneError::RequiredExtension { path: path.into(), extension });
-        }
-    }
-    let mut colored = 0;
-    // The crate's validation refuses attributes that it does not know, which the format allows.
-    for primitive in json.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
-        let material = primitive.material.and_then(|index| json.materials.get(index.value()));
-        let masked = material.is_some_and(|m| m.alpha_mode == Checked::Valid(AlphaMode::Mask));
-        let colors = Checked::Valid(Semantic::Colors(0));
-        colored += usize::from(masked && primitive.attributes.contains_key(&colors));
-        primitive.attributes.retain(|name, _| match name {
-            Checked::Valid(Semantic::Positions | Semantic::Normals) => true,
-            Checked::Valid(Semantic::TexCoords(_)) => masked,
-            _ => false,
-        });
-    }
-    let document = Document::from_json(json).map_err(|e| malformed(path, e))?;
+/// What the file holds, and warnings about the rest.
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Contents, SceneError> {
+    let whole = |fault: Fault| fault.error(path, "");
+    let parts = container::parts(bytes).map_err(|what| whole(what.into()))?;
+    let document = Document::new(parts.json).map_err(whole)?;
+    let buffers = Buffers::new(&document, path, parts.bin);
     let mut reader = Reader {
         path,
-        buffers: buffers(path, &document, file.blob)?,
-        images: Images { path, decoded: HashMap::new() },
-        scene,
-        mesh_nodes: 0,
-        not_triangles: 0,
-        directional: 0,
-        dark: 0,
+        document: &document,
+        accessors: &Accessors::new(&buffers),
+        images: Images { path, buffers: &buffers, decoded: HashMap::new() },
+        tree: Tree::new(&document).map_err(whole)?,
+        contents: Contents::default(),
+        skipped: Skipped::default(),
+        instances: 0,
     };
-    reader.images.check(&document, &reader.buffers)?;
-    reader.nodes(&document)?;
-    let Reader { mesh_nodes, not_triangles, directional, dark, .. } = reader;
-    let mut counted = |count: usize, what: &str| {
-        if count > 0 {
-            scene.warnings.push(format!("{count} {what}"));
-        }
-    };
-    counted(colored, "masked primitives have vertex colours, whose alpha is ignored");
-    counted(not_triangles, "point or line primitives skipped");
-    counted(directional, "directional lights skipped: they have no position");
-    counted(dark, "lights without colour, position or direction skipped");
-    let meshes = document.meshes().len();
-    Ok(format!("{meshes} meshes and {mesh_nodes} nodes that use one"))
-}
-
-/// Every buffer's bytes, from the file itself, a data URI or another file.
-fn buffers(
-    path: &Path,
-    document: &Document,
-    mut blob: Option<Vec<u8>>,
-) -> Result<Vec<buffer::Data>, SceneError> {
-    let folder = path.parent();
-    document
-        .buffers()
-        .map(|buffer| {
-            let uri = match buffer.source() {
-                buffer::Source::Bin => "BIN chunk",
-                buffer::Source::Uri(uri) if uri.starts_with("data:") => "data URI",
-                buffer::Source::Uri(uri) => uri,
-            };
-            let error =
-                |what: String| SceneError::Buffer { path: path.into(), uri: uri.into(), what };
-            let mut data = match buffer.source() {
-                buffer::Source::Uri(uri) => named::of_uri(uri, folder).map_err(error)?,
-                buffer::Source::Bin => blob.take().ok_or_else(|| error("there is none".into()))?,
-            };
-            // lengths that count the padding of a multiple of 4 are common
-            data.resize(data.len().next_multiple_of(4), 0);
-            let data = buffer::Data(data);
-            if data.len() < buffer.length() {
-                let (is, wants) = (data.len(), buffer.length());
-                return Err(error(format!("it has {is} bytes of {wants}")));
-            }
-            Ok(data)
-        })
-        .collect()
+    reader.images.check()?;
+    reader.contents.warnings = extensions::warnings(&document.used, &document.required);
+    let mesh_nodes = reader.nodes()?;
+    let Reader { mut contents, skipped, .. } = reader;
+    contents.warnings.extend(skipped.report());
+    let meshes = document.count("meshes");
+    contents.found = format!("{meshes} meshes and {mesh_nodes} nodes that use one");
+    Ok(contents)
 }
 
 struct Reader<'a> {
     path: &'a Path,
-    buffers: Vec<buffer::Data>,
+    document: &'a Document<'a>,
+    accessors: &'a Accessors<'a>,
     images: Images<'a>,
-    scene: &'a mut Scene,
-    mesh_nodes: usize,
-    not_triangles: usize,
+    tree: Tree<'a>,
+    contents: Contents,
+    skipped: Skipped,
+    /// Triangles of all copies.
+    instances: usize,
+}
+
+/// How much of what was left out.
+#[derive(Default)]
+struct Skipped {
+    colored: usize,
+    points_or_lines: usize,
+    unknown_modes: usize,
+    without_positions: usize,
+    hidden: usize,
     directional: usize,
     dark: usize,
+    /// Kinds of lights.
+    unknown_lights: Vec<String>,
 }
 
-impl Reader<'_> {
-    /// The nodes of the default scene, else of the first, else all nodes; each once.
-    fn nodes(&mut self, document: &Document) -> Result<(), SceneError> {
-        let mut roots: Vec<Node> = document
-            .default_scene()
-            .or_else(|| document.scenes().next())
-            .into_iter()
-            .flat_map(|scene| scene.nodes())
-            .collect();
-        if roots.is_empty() {
-            let mut is_root = vec![true; document.nodes().len()];
-            for child in document.nodes().flat_map(|node| node.children()) {
-                is_root[child.index()] = false;
-            }
-            roots = document.nodes().filter(|node| is_root[node.index()]).collect();
+impl Skipped {
+    fn report(&self) -> Vec<String> {
+        let counts = [
+            (self.colored, "masked primitives have vertex colours, whose alpha is ignored"),
+            (self.points_or_lines, "point or line primitives skipped"),
+            (self.unknown_modes, "primitives of an unknown mode skipped"),
+            (self.without_positions, "primitives without positions skipped"),
+            (self.directional, "directional lights skipped: they have no position"),
+            (self.dark, "lights without colour, position or direction skipped"),
+        ];
+        let counted = counts.into_iter().filter(|(count, _)| *count > 0);
+        let mut lines: Vec<_> = counted.map(|(count, what)| format!("{count} {what}")).collect();
+        if let Some(kind) = self.unknown_lights.first() {
+            let count = self.unknown_lights.len();
+            lines.push(format!("{count} lights of an unknown kind, as `{kind}`, skipped"));
         }
-        // A stack, not recursion, and a mark: the file may be deep, or cyclic against the rules.
-        let mut stack: Vec<(Node, Mat4)> =
-            roots.into_iter().rev().map(|node| (node, Mat4::IDENTITY)).collect();
-        let mut seen = vec![false; document.nodes().len()];
-        while let Some((node, parent)) = stack.pop() {
-            if std::mem::replace(&mut seen[node.index()], true) {
+        lines
+    }
+}
+
+#[derive(Deserialize)]
+struct Mesh<'a> {
+    name: Option<String>,
+    #[serde(borrow)]
+    primitives: Vec<&'a RawValue>,
+    #[serde(borrow)]
+    weights: Option<&'a RawValue>,
+}
+
+/// Most triangles of all copies of meshes: a few kilobytes can ask for any number.
+const MOST_INSTANCED: usize = 1 << 25;
+
+impl<'a> Reader<'a> {
+    /// Reads what each node holds; returns how many of those that are shown have a mesh.
+    fn nodes(&mut self) -> Result<usize, SceneError> {
+        let shown = std::mem::take(&mut self.tree.shown);
+        let mut mesh_nodes = 0;
+        for (index, Placed { node, visible }) in &shown {
+            let world = self.tree.world(*index).unwrap_or(DAffine3::IDENTITY);
+            if *visible {
+                if let Some(mesh) = node.mesh {
+                    mesh_nodes += 1;
+                    self.mesh(mesh, node, world)?;
+                }
+                self.light(node, &world);
+            } else {
+                self.skipped.hidden += usize::from(node.mesh.is_some());
+            }
+            if let (Some(camera), None) = (node.camera, &self.contents.camera) {
+                self.contents.camera = light::camera(self.document, camera, &world);
+                if self.contents.camera.is_none() {
+                    let warning = "a camera without a usable perspective was skipped";
+                    self.contents.warnings.push(warning.into());
+                }
+            }
+        }
+        Ok(mesh_nodes)
+    }
+
+    fn light(&mut self, node: &Node, world: &DAffine3) {
+        let warnings = &mut self.contents.warnings;
+        match light::light(self.document, &node.extensions, world, warnings) {
+            Ok(None) => {}
+            Ok(Some(Found::Light(position, light))) => self.contents.lights.push((position, light)),
+            Ok(Some(Found::Directional)) => self.skipped.directional += 1,
+            Ok(Some(Found::Unknown(kind))) => self.skipped.unknown_lights.push(kind),
+            Ok(Some(Found::Dark)) => self.skipped.dark += 1,
+            Err(what) => warnings.push(format!("a light was skipped: {what}")),
+        }
+    }
+
+    fn mesh(&mut self, index: usize, node: &Node, world: DAffine3) -> Result<(), SceneError> {
+        let mesh: Mesh = self.get("meshes", index)?;
+        let unnamed = format!("mesh {index}");
+        let name = mesh.name.as_ref().or(node.name.as_ref()).unwrap_or(&unnamed);
+        let joints = node.skin.and_then(|skin| self.joints(skin, name));
+        let places = self.places(node, world, name);
+        for (i, text) in mesh.primitives.iter().enumerate() {
+            let name = match mesh.primitives.len() {
+                1 => name.clone(),
+                _ => format!("{name}/{i}"),
+            };
+            let error = |fault: Fault| fault.error(self.path, &format!("mesh `{name}`"));
+            let primitive: Primitive = of_text(text).map_err(|what| error(what.into()))?;
+            if let Some(other) = primitive.other() {
+                self.skipped.count(other);
                 continue;
             }
-            let world = parent * Mat4::from_cols_array_2d(&node.transform().matrix());
-            self.node(&node, world)?;
-            let first = stack.len();
-            stack.extend(node.children().map(|child| (child, world)));
-            stack[first..].reverse();
+            let around = Around {
+                name: name.clone(),
+                places: &places,
+                joints: joints.as_deref(),
+                mesh_weights: mesh.weights,
+                node_weights: node.weights,
+            };
+            self.primitive(&primitive, around)?;
         }
         Ok(())
     }
 
-    fn node(&mut self, node: &Node, world: Mat4) -> Result<(), SceneError> {
-        if let Some(mesh) = node.mesh() {
-            self.mesh_nodes += 1;
-            let unnamed = format!("mesh {}", mesh.index());
-            let name = mesh.name().or(node.name()).unwrap_or(&unnamed);
-            if node.skin().is_some() {
-                let warning = format!("mesh `{name}`: skin ignored, shown in its bind pose");
-                self.scene.warnings.push(warning);
-            }
-            for it in mesh.primitives() {
-                let name = match mesh.primitives().len() {
-                    1 => name.to_string(),
-                    _ => format!("{name}/{}", it.index()),
-                };
-                if !primitive::has_triangles(it.mode()) {
-                    self.not_triangles += 1;
-                    continue;
-                }
-                let warnings = &mut self.scene.warnings;
-                let images = &mut self.images;
-                let mask = match images.coverage(&it.material(), &name, &self.buffers, warnings)? {
-                    Coverage::Opaque => None,
-                    Coverage::Masked(mask) => Some(mask),
-                    Coverage::Nothing => continue,
-                };
-                let (label, buffers) = (name.clone(), &self.buffers);
-                let mesh = primitive::mesh(label, &it, mask, world, buffers, warnings)
-                    .map_err(|what| malformed(self.path, format!("mesh `{name}`: {what}")))?;
-                self.scene.meshes.extend(mesh);
+    fn primitive(&mut self, primitive: &Primitive, around: Around) -> Result<(), SceneError> {
+        let path = self.path;
+        let part = format!("mesh `{}`", around.name);
+        let error = |fault: Fault| fault.error(path, &part);
+        let material = Material::of(self.document, primitive.material).map_err(error)?;
+        let warnings = &mut self.contents.warnings;
+        let mask = match self.images.coverage(&material, &around.name, warnings)? {
+            Coverage::Opaque => None,
+            Coverage::Masked(mask) => Some(mask),
+            Coverage::Nothing => return Ok(()),
+        };
+        let is_masked = matches!(material.alpha_mode(), AlphaMode::Mask);
+        let has_colors = primitive.attributes.contains_key("COLOR_0");
+        self.skipped.colored += usize::from(is_masked && has_colors);
+        let draft = primitive.draft(around, &material, mask, self.accessors, warnings);
+        let draft = draft.map_err(error)?;
+        if draft.places.len() > 1 {
+            self.instances += draft.places.len().saturating_mul(draft.triangles.len());
+            if self.instances > MOST_INSTANCED {
+                let what = format!("its copies have more than {MOST_INSTANCED} triangles");
+                return Err(error(what.into()));
             }
         }
-        let eye = world.w_axis.truncate();
-        let forward = unit(-world.z_axis.truncate());
-        if let Some(light) = node.light() {
-            match (light.kind(), self::light(&light, eye, forward)) {
-                (Kind::Directional, _) => self.directional += 1,
-                (_, Some(light)) => self.scene.lights.push(light),
-                (_, None) => self.dark += 1,
-            }
-        }
-        if let (Some(camera), None) = (node.camera(), self.scene.camera) {
-            let up = unit(world.y_axis.truncate());
-            self.scene.camera = self::camera(&camera, eye, forward, up);
-            if self.scene.camera.is_none() {
-                let warning = "a camera without a usable perspective was skipped";
-                self.scene.warnings.push(warning.into());
-            }
-        }
+        self.contents.drafts.push(draft);
         Ok(())
+    }
+
+    fn get<T: Deserialize<'a>>(&self, list: &str, index: usize) -> Result<T, SceneError> {
+        self.document.get(list, index).map_err(|fault| fault.error(self.path, ""))
+    }
+
+    /// Of a skin; `None`, with a warning, for one that cannot be used.
+    fn joints(&mut self, skin: usize, mesh: &str) -> Option<Vec<DAffine3>> {
+        let joints = skin::joints(skin, self.document, &mut self.tree, self.accessors);
+        let mut warn = |fault: Fault| {
+            let what = format!("mesh `{mesh}`: skin ignored, shown in its bind pose: {fault}");
+            self.contents.warnings.push(what);
+        };
+        joints.map_err(&mut warn).ok()
+    }
+
+    /// Where the copies of a node's mesh are; the node's own place if there are none.
+    fn places(&mut self, node: &Node, world: DAffine3, mesh: &str) -> Vec<DAffine3> {
+        match instances::places(&node.extensions, self.accessors) {
+            Ok(Some(places)) => places.into_iter().map(|place| world * place).collect(),
+            Ok(None) => vec![world],
+            Err(fault) => {
+                let what = format!("mesh `{mesh}`: copies ignored, shown once: {fault}");
+                self.contents.warnings.push(what);
+                vec![world]
+            }
+        }
     }
 }
 
-/// `None` if it lights nothing. A spot is hemispherical: its cone is wider here than in the file.
-fn light(
-    light: &::gltf::khr_lights_punctual::Light,
-    position: Vec3,
-    forward: Option<Vec3>,
-) -> Option<Light> {
-    let axis = match light.kind() {
-        Kind::Spot { .. } => Some(forward?),
-        _ => None,
-    };
-    let color = Vec3::from(light.color());
-    let brightest = color.max_element();
-    let shines = color.is_finite() && brightest > 0.0 && light.intensity() > 0.0;
-    (shines && position.is_finite()).then(|| Light {
-        position,
-        axis,
-        color: (color / brightest).max(Vec3::ZERO),
-        cone: None,
-        range: None,
-    })
-}
-
-fn camera(
-    camera: &::gltf::Camera,
-    eye: Vec3,
-    forward: Option<Vec3>,
-    up: Option<Vec3>,
-) -> Option<Camera> {
-    let Projection::Perspective(lens) = camera.projection() else {
-        return None;
-    };
-    let (target, vertical_fov) = (eye + forward?, lens.yfov());
-    // So far from the origin that a metre is lost, the target would be the eye.
-    let usable = target.is_finite() && target != eye && vertical_fov > 0.0 && vertical_fov < PI;
-    usable.then_some(Camera { eye, target, up: up?, vertical_fov })
+impl Skipped {
+    fn count(&mut self, other: Other) {
+        *match other {
+            Other::PointsOrLines => &mut self.points_or_lines,
+            Other::UnknownMode => &mut self.unknown_modes,
+            Other::NoPositions => &mut self.without_positions,
+        } += 1;
+    }
 }

@@ -1,172 +1,211 @@
-//! Wavefront OBJ as the `tobj` crate reads it: a mesh for each group and run of one material.
+//! Wavefront OBJ: a mesh for each group and run of one material.
+//!
+//! The reader is our own: the kept crate has no numbers of lines, reads eight numbers of a vertex as
+//! an error, and loses a normal's place where others have none.
 
-use std::cell::RefCell;
-use std::fmt::Display;
+mod materials;
+mod polygon;
+mod statements;
+
 use std::path::Path;
+use std::rc::Rc;
 
-use earcut::{Earcut, deviation, utils3d::project3d_to_2d};
-use glam::Vec3;
-use tobj::{LoadOptions, MTLLoadResult, Material, Model};
+use glam::{DAffine3, DVec3, Vec3};
 
-use super::{Corner, Draft, albedo, malformed, named};
-use crate::scene::{Scene, SceneError};
+use super::draft::{Corner, Draft};
+use super::{Contents, malformed, text};
+use crate::scene::SceneError;
+use materials::Materials;
+use statements::{Statement, numbers, statement, statements};
 
 /// Of faces without a material: a light grey.
 const DEFAULT_ALBEDO: Vec3 = Vec3::splat(0.8);
 
-/// Adds the file's meshes and warnings to the scene; returns what it found, in words.
-pub(super) fn read(path: &Path, bytes: &[u8], scene: &mut Scene) -> Result<String, SceneError> {
-    let warnings = &mut scene.warnings;
-    let text = clean(bytes);
-    // `tobj` would make faces of lines, and check texture coordinates, which nobody needs.
-    let mut not_faces = statements(&text, &["l", "p"]).lines().count();
-    let used = ["v", "vn", "f", "o", "g", "usemtl", "mtllib"];
-    let (models, materials) = load(path, &statements(&text, &used), warnings)?;
+/// Of faces before the first group.
+const UNNAMED: &str = "unnamed_object";
 
-    let (mut faces, mut crossing) = (0, 0);
-    for Model { mut mesh, name } in models {
-        if mesh.face_arities.is_empty() {
-            mesh.face_arities = vec![3; mesh.indices.len() / 3];
-        }
-        let positions = vectors(&mesh.positions);
-        let mut normals = vectors(&mesh.normals);
-        // `tobj` leaves no gap for a missing normal, so nobody knows whose the others are.
-        if !normals.is_empty() && normals.len() != positions.len() {
-            normals.clear();
-            let what = "some corners have no normal, so all got their face's";
-            warnings.push(format!("mesh `{name}`: {what}"));
-        }
-        let normal = |position| (!normals.is_empty()).then_some(position);
-        let corner = |position| Corner { position, normal: normal(position), texcoord: None };
-        let mut triangles = Vec::new();
-        let mut rest = &mesh.indices[..];
-        for &arity in &mesh.face_arities {
-            let (face, others) = rest.split_at(arity as usize);
-            rest = others;
-            if arity < 3 {
-                not_faces += 1;
-                continue;
+/// What the file holds, and warnings about the rest.
+pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Contents, SceneError> {
+    let text = text::decoded(bytes);
+    let mut file = File::default();
+    for statement in statements(&text).iter().filter_map(statement) {
+        file.add(&statement).map_err(|what| malformed(path, statement.fault(&what)))?;
+    }
+    file.check(&text).map_err(|what| malformed(path, what))?;
+    Ok(file.contents(path))
+}
+
+/// Faces of one group and one material.
+struct Run {
+    group: String,
+    /// As the file names it, which may end in a comment.
+    material: String,
+    faces: Vec<Face>,
+}
+
+/// Some of the file's corners, and the line that has them.
+struct Face {
+    corners: std::ops::Range<usize>,
+    line: usize,
+}
+
+#[derive(Default)]
+struct File {
+    positions: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    corners: Vec<Corner>,
+    runs: Vec<Run>,
+    group: String,
+    material: String,
+    libraries: Vec<String>,
+    not_faces: usize,
+    free_form: usize,
+}
+
+impl File {
+    fn add(&mut self, statement: &Statement) -> Result<(), String> {
+        let Statement { keyword, rest, .. } = statement;
+        match *keyword {
+            "v" => self.positions.push(numbers(rest).ok_or("a vertex needs three numbers")?),
+            "vn" => self.normals.push(numbers(rest).ok_or("a normal needs three numbers")?),
+            "f" => self.face(statement)?,
+            "l" | "p" => self.not_faces += 1,
+            "curv" | "curv2" | "surf" => self.free_form += 1,
+            "o" | "g" => {
+                self.group = statements::name(rest).into();
+                self.begin();
             }
-            faces += 1;
-            let points: Vec<Vec3> = face.iter().map(|&i| positions[i as usize]).collect();
-            let (cut, covered) = triangulate(&points);
-            crossing += usize::from(!covered);
-            triangles.extend(cut.into_iter().map(|t| t.map(|i| corner(face[i]))));
+            "usemtl" if self.material != *rest => {
+                self.material = (*rest).into();
+                self.begin();
+            }
+            "mtllib" => self.libraries.push((*rest).into()),
+            _ => {}
         }
-        let material = mesh.material_id.map(|i| &materials[i]);
-        let draft = Draft {
-            name: material.map_or(name.clone(), |material| format!("{name}/{}", material.name)),
-            positions: &positions,
-            normals: &normals,
-            texcoords: &[],
-            triangles,
-            albedo: material.and_then(|material| material.diffuse).map_or(DEFAULT_ALBEDO, albedo),
-            mask: None,
+        Ok(())
+    }
+
+    /// Begins a mesh, if the last one has a face.
+    fn begin(&mut self) {
+        let run = Run {
+            group: if self.group.is_empty() { UNNAMED.into() } else { self.group.clone() },
+            material: self.material.clone(),
+            faces: Vec::new(),
         };
-        scene.meshes.extend(draft.finish(warnings));
-    }
-    let mut counted = |count: usize, what: &str| {
-        if count > 0 {
-            warnings.push(format!("{count} {what}"));
-        }
-    };
-    counted(not_faces, "points, lines or faces of fewer than three corners skipped");
-    counted(crossing, "polygons cross themselves or have no area, and may be covered wrongly");
-    Ok(format!("{faces} faces"))
-}
-
-fn load(
-    path: &Path,
-    text: &str,
-    warnings: &mut Vec<String>,
-) -> Result<(Vec<Model>, Vec<Material>), SceneError> {
-    let options = LoadOptions {
-        // With indices of their own, normals that are missing would be the previous corner's.
-        single_index: true,
-        ..LoadOptions::default()
-    };
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let warnings = RefCell::new(warnings);
-    let mut rest = text.as_bytes();
-    let loaded = tobj::load_obj_buf(&mut rest, &options, |names| {
-        libraries(folder, &names.to_string_lossy(), &mut warnings.borrow_mut())
-    });
-    let (models, materials) = loaded.map_err(|error| {
-        // The last line that `tobj` has read; it checks indices at the end of a mesh only.
-        let read = &text[..text.len() - rest.len()];
-        let line = read.lines().next_back().unwrap_or_default();
-        malformed(path, format!("{error}, at or before the line `{line}`"))
-    })?;
-    Ok((models, materials.unwrap_or_default()))
-}
-
-/// The names and diffuse colours of the one file, possibly with spaces in its name, or several.
-fn libraries(folder: &Path, names: &str, warnings: &mut Vec<String>) -> MTLLoadResult {
-    let mut warn = |name: &str, error: &dyn Display| {
-        warnings.push(format!(
-            "material library `{name}` cannot be read ({error}): its materials are grey"
-        ));
-    };
-    let files = match folder.join(names).exists() {
-        true => vec![names],
-        false => names.split_whitespace().collect(),
-    };
-    let mut text = String::new();
-    for name in files {
-        match named::read(&folder.join(name)) {
-            Ok(bytes) => text += &statements(&clean(&bytes), &["newmtl", "Kd"]),
-            Err(error) => warn(name, &error),
+        match self.runs.last_mut() {
+            Some(last) if last.faces.is_empty() => *last = run,
+            _ => self.runs.push(run),
         }
     }
-    // `tobj` panics for a colour of fewer than three numbers, as a grey is, and ignores a fourth.
-    let lines = text.lines().map(|line| match line.split_whitespace().next_back() {
-        Some(last) if line.starts_with("Kd") => format!("{line} {last} {last}\n"),
-        _ => format!("{line}\n"),
-    });
-    let text: String = lines.collect();
-    tobj::load_mtl_buf(&mut text.as_bytes()).inspect_err(|error| warn(names, error))
-}
 
-/// Statements one a line, as `tobj` wants them: it knows no continued lines, and takes
-/// indentation and tabs for parts of names. Names may be in any encoding.
-fn clean(bytes: &[u8]) -> String {
-    let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
-    text.replace("\\\n", " ").replace('\t', " ")
-}
-
-/// Those of some kinds.
-fn statements(text: &str, keywords: &[&str]) -> String {
-    let lines = text.lines().map(str::trim);
-    let kept = lines.filter(|line| {
-        let keyword = line.split_whitespace().next();
-        keyword.is_some_and(|keyword| keywords.contains(&keyword))
-    });
-    kept.flat_map(|line| [line, "\n"]).collect()
-}
-
-/// Corner numbers of triangles that wind like the polygon, and whether they cover it once.
-fn triangulate(polygon: &[Vec3]) -> (Vec<[usize; 3]>, bool) {
-    /// Of the areas, relative. Polygons that cross themselves are far beyond it.
-    const MAX_DEVIATION: f64 = 1e-6;
-    let corners = polygon.len();
-    let fan = || (2..corners).map(|i| [0, i - 1, i]).collect();
-    // What is not finite will be dropped: any cut will do.
-    if corners == 3 || !polygon.iter().all(|point| point.is_finite()) {
-        return (fan(), true);
+    fn face(&mut self, statement: &Statement) -> Result<(), String> {
+        let start = self.corners.len();
+        for corner in statements::without_comment(statement.rest).split_whitespace() {
+            let mut parts = corner.split('/');
+            let position = index(parts.next(), self.positions.len(), "vertex")?;
+            // before the first normal there is none to name
+            let normal = parts.nth(1).filter(|_| !self.normals.is_empty());
+            let normal = index(normal, self.normals.len(), "normal")?;
+            let position = position.ok_or_else(|| format!("`{corner}` names no vertex"))?;
+            self.corners.push(Corner { position, normal, texcoord: None });
+        }
+        let corners = start..self.corners.len();
+        if corners.len() < 3 {
+            self.not_faces += 1;
+            self.corners.truncate(start);
+            return Ok(());
+        }
+        if self.runs.is_empty() {
+            self.begin();
+        }
+        let faces = self.runs.last_mut().map(|run| &mut run.faces);
+        faces.into_iter().for_each(|faces| {
+            faces.push(Face { corners: corners.clone(), line: statement.line });
+        });
+        Ok(())
     }
-    let points = polygon.iter().map(|point| point.as_dvec3().to_array());
-    let points: Vec<[f64; 3]> = points.collect();
-    let (mut flat, mut cut) = (Vec::new(), Vec::new());
-    if !project3d_to_2d(&points, corners, &mut flat) {
-        return (fan(), false);
+
+    /// Refuses faces that name what the file has nowhere; it may have it behind them.
+    fn check(&self, text: &str) -> Result<(), String> {
+        let vertices = self.positions.len();
+        let normals = self.normals.len();
+        let is_there = |corner: &Corner| {
+            let normal = corner.normal.is_none_or(|normal| (normal as usize) < normals);
+            (corner.position as usize) < vertices && normal
+        };
+        for face in self.runs.iter().flat_map(|run| &run.faces) {
+            let corners = &self.corners[face.corners.clone()];
+            let Some(wrong) = corners.iter().find(|corner| !is_there(corner)) else { continue };
+            let what = match (wrong.position as usize) < vertices {
+                false => format!("there is no vertex {}, of {vertices}", wrong.position + 1),
+                true => {
+                    let normal = wrong.normal.unwrap_or_default() + 1;
+                    format!("there is no normal {normal}, of {normals}")
+                }
+            };
+            return Err(statements::fault(text, face.line, &what));
+        }
+        Ok(())
     }
-    Earcut::new().earcut_slice(&flat, &[], &mut cut);
-    if deviation(flat, &[], &cut) > MAX_DEVIATION {
-        return (fan(), false);
+
+    fn contents(self, path: &Path) -> Contents {
+        let mut contents = Contents::default();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let materials = Materials::read(folder, &self.libraries, &mut contents.warnings);
+        let positions = Rc::new(self.positions);
+        let normals = Rc::new(self.normals);
+        let (mut faces, mut crossing) = (0, 0);
+        for run in self.runs {
+            faces += run.faces.len();
+            let mut triangles = Vec::with_capacity(run.faces.len());
+            for face in run.faces {
+                let corners = &self.corners[face.corners];
+                let points = corners.iter().map(|corner| positions[corner.position as usize]);
+                let (cut, covered) = polygon::triangulate(&points.collect::<Vec<_>>());
+                crossing += usize::from(!covered);
+                triangles.extend(cut.into_iter().map(|t| t.map(|i| corners[i])));
+            }
+            let material = materials.get(&run.material);
+            let group = run.group;
+            contents.drafts.push(Draft {
+                name: material.map_or(group.clone(), |(name, _)| format!("{group}/{name}")),
+                positions: positions.clone(),
+                normals: normals.clone(),
+                texcoords: Vec::new(),
+                triangles,
+                places: vec![DAffine3::IDENTITY],
+                albedo: material.and_then(|(_, diffuse)| diffuse).unwrap_or(DEFAULT_ALBEDO),
+                mask: None,
+                first_number: 1,
+            });
+        }
+        let mut counted = |count: usize, what: &str| {
+            if count > 0 {
+                contents.warnings.push(format!("{count} {what}"));
+            }
+        };
+        let few = "points, lines or faces of fewer than three corners skipped";
+        counted(self.not_faces, few);
+        counted(self.free_form, "free-form curves or surfaces skipped");
+        counted(crossing, "polygons cross themselves or have no area, and may be covered wrongly");
+        contents.found = format!("{faces} faces");
+        contents
     }
-    (cut.as_chunks().0.to_vec(), true)
 }
 
-fn vectors(numbers: &[f32]) -> Vec<Vec3> {
-    numbers.chunks_exact(3).map(Vec3::from_slice).collect()
+/// An index from zero of one that counts from one, or backward from -1; `None` if it is left out.
+/// Those that count forward may name what follows.
+fn index(text: Option<&str>, count: usize, what: &str) -> Result<Option<u32>, String> {
+    let Some(text) = text.filter(|text| !text.is_empty()) else { return Ok(None) };
+    let number: i64 = text.parse().map_err(|_| format!("`{text}` is no number of a {what}"))?;
+    let index = match number {
+        1.. => number - 1,
+        _ if number < 0 => count as i64 + number,
+        _ => -1,
+    };
+    match u32::try_from(index) {
+        // the largest would not be countable from one
+        Ok(index) if index < u32::MAX => Ok(Some(index)),
+        _ => Err(format!("there is no {what} {number}, of {count}")),
+    }
 }
