@@ -3,18 +3,25 @@
 #![cfg(feature = "scene")]
 
 mod built_in;
+mod far;
+mod geometry;
 mod gltf_faults;
 mod gltf_files;
+mod kinds;
+mod legal;
+mod lights;
 mod mask_faults;
 mod masks;
+mod model;
 mod named_files;
 mod obj_files;
+mod obj_odd;
 mod view;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use dpsm::scene::{BUILT_IN, Camera, Mesh, Options, Scene, open};
+use dpsm::scene::{BUILT_IN, Camera, Cone, Mesh, Options, Scene, open};
 use glam::{DVec3, Vec3};
 
 fn built_in(name: &str, walls: u32) -> Scene {
@@ -134,6 +141,7 @@ fn shared(name: &str) -> Option<Scene> {
 /// What every scene promises, however bad its file.
 fn assert_valid(scene: &Scene) {
     assert!(scene.triangle_count() > 0);
+    assert!(scene.origin.is_finite());
     for mesh in &scene.meshes {
         assert_eq!(mesh.positions.len(), mesh.normals.len());
         assert!(mesh.positions.iter().all(|p| p.is_finite()));
@@ -146,6 +154,11 @@ fn assert_valid(scene: &Scene) {
     for light in &scene.lights {
         assert!(light.position.is_finite() && light.color.max_element() == 1.0);
         assert!(light.axis.is_none_or(|axis| axis.is_normalized()));
+        if let Some(Cone { inner, outer }) = light.cone {
+            assert!(light.axis.is_some() && inner >= 0.0 && inner < outer);
+            assert!(outer <= std::f32::consts::FRAC_PI_2);
+        }
+        assert!(light.range.is_none_or(|range| range > 0.0 && range.is_finite()));
     }
     let light = scene.default_light().position;
     let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light));

@@ -1,6 +1,6 @@
 //! Punctual lights (KHR_lights_punctual) and cameras.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::{DAffine3, DVec3, Vec3};
 use serde::Deserialize;
@@ -9,6 +9,9 @@ use serde_json::value::RawValue;
 use super::document::{Document, Extensions, extension, of_text};
 use crate::scene::load::{View, unit};
 use crate::scene::{Cone, Light};
+
+/// Of a cone's angles.
+const WIDEST: f32 = std::f32::consts::FRAC_PI_2;
 
 const NAME: &str = "KHR_lights_punctual";
 
@@ -93,15 +96,13 @@ pub(super) fn light(
 fn cone(spot: &Spot, warnings: &mut Vec<String>) -> Cone {
     let inner = spot.inner_cone_angle.unwrap_or(0.0);
     let outer = spot.outer_cone_angle.unwrap_or(FRAC_PI_4);
-    // as f32 has them, which may be just above
-    let widest = FRAC_PI_2 as f32 as f64;
-    let is_usable = outer > 0.0 && outer <= widest && (0.0..=outer).contains(&inner);
+    let is_usable = outer > 0.0 && outer as f32 <= WIDEST && (0.0..=outer).contains(&inner);
     if !is_usable {
         warnings.push(format!("a spot's cone of {inner} to {outer} rad is not possible: cut"));
     }
-    let outer = if outer > 0.0 { outer.min(FRAC_PI_2) } else { FRAC_PI_4 } as f32;
-    // so narrow that f32 has no such angle
-    let outer = outer.max(f32::MIN_POSITIVE);
+    let outer = if outer > 0.0 { outer as f32 } else { FRAC_PI_4 as f32 };
+    // an angle may be so narrow that f32 has none
+    let outer = outer.clamp(f32::MIN_POSITIVE, WIDEST);
     Cone { inner: (inner.max(0.0) as f32).min(outer.next_down()), outer }
 }
 

@@ -2,9 +2,15 @@
 
 use earcut::{Earcut, deviation, utils3d::project3d_to_2d};
 use glam::DVec3;
+use spade::handles::FixedVertexHandle;
+use spade::{ConstrainedDelaunayTriangulation as Delaunay, Point2, Triangulation};
 
 /// Of the areas, relative. Polygons that cross themselves are far beyond it.
 const MAX_DEVIATION: f64 = 1e-6;
+
+/// From so many corners on ears take longer to find than a Delaunay triangulation takes: for saws,
+/// their time is as the square of the corners.
+const MANY: usize = 1000;
 
 /// Corner numbers of triangles that wind like the polygon, and whether they cover it once.
 pub(super) fn triangulate(polygon: &[DVec3]) -> (Vec<[usize; 3]>, bool) {
@@ -16,13 +22,63 @@ pub(super) fn triangulate(polygon: &[DVec3]) -> (Vec<[usize; 3]>, bool) {
     }
     // from a corner of its own, as it may be far from the file's origin
     let points: Vec<[f64; 3]> = polygon.iter().map(|p| (p - polygon[0]).to_array()).collect();
-    let (mut flat, mut cut) = (Vec::new(), Vec::new());
+    let mut flat = Vec::new();
     if !project3d_to_2d(&points, corners, &mut flat) {
         return (fan(), false);
     }
-    Earcut::new().earcut_slice(&flat, &[], &mut cut);
-    if deviation(flat, &[], &cut) > MAX_DEVIATION {
-        return (fan(), false);
+    let covers = |cut: &[[usize; 3]]| {
+        deviation(flat.iter().copied(), &[] as &[usize], cut.as_flattened()) <= MAX_DEVIATION
+    };
+    if corners >= MANY
+        && let Some(cut) = delaunay(&flat).filter(|cut| covers(cut))
+    {
+        return (cut, true);
     }
-    (cut.as_chunks().0.to_vec(), true)
+    let mut cut = Vec::new();
+    Earcut::new().earcut_slice(&flat, &[], &mut cut);
+    let cut = cut.as_chunks().0.to_vec();
+    if covers(&cut) { (cut, true) } else { (fan(), false) }
+}
+
+/// The triangles of a Delaunay triangulation with the polygon's edges in it that lie inside; `None`
+/// for a polygon that crosses or touches itself.
+fn delaunay(polygon: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
+    let corners = polygon.len();
+    let points = polygon.iter().map(|&[x, y]| Point2::new(x, y)).collect();
+    let edges = (0..corners).map(|i| [i, (i + 1) % corners]).collect();
+    let mut conflicts = 0;
+    let whole = Delaunay::<Point2<f64>>::try_bulk_load_cdt(points, edges, |_| conflicts += 1);
+    let whole = whole.ok().filter(|whole| whole.num_vertices() == corners && conflicts == 0)?;
+    let turns_left = doubled_area(polygon) > 0.0;
+    // inside are the polygon's side of each edge, and what is beside that without an edge between
+    let mut inside = vec![false; whole.num_all_faces()];
+    let mut stack = Vec::new();
+    for i in 0..corners {
+        let [from, to] = [i, (i + 1) % corners].map(FixedVertexHandle::from_index);
+        let edge = whole.get_edge_from_neighbors(from, to)?;
+        stack.push(if turns_left { edge.fix() } else { edge.rev().fix() });
+    }
+    while let Some(edge) = stack.pop() {
+        let edge = whole.directed_edge(edge);
+        let face = edge.face().as_inner()?.fix();
+        if std::mem::replace(&mut inside[face.index()], true) {
+            continue;
+        }
+        for side in [edge.next(), edge.prev()] {
+            if !side.is_constraint_edge() {
+                stack.push(side.rev().fix());
+            }
+        }
+    }
+    let faces = whole.inner_faces().filter(|face| inside[face.fix().index()]);
+    let triangle = |[a, b, c]: [usize; 3]| if turns_left { [a, b, c] } else { [a, c, b] };
+    let cut = faces.map(|face| triangle(face.vertices().map(|vertex| vertex.index())));
+    let cut: Vec<_> = cut.collect();
+    (cut.len() == corners - 2).then_some(cut)
+}
+
+/// Positive for a polygon that turns left.
+fn doubled_area(polygon: &[[f64; 2]]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
