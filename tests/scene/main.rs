@@ -16,6 +16,7 @@ mod model;
 mod named_files;
 mod obj_files;
 mod obj_odd;
+mod packed;
 mod view;
 
 use std::collections::HashMap;

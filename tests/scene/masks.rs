@@ -293,3 +293,84 @@ fn mask_repeats_in_both_directions_and_on_both_sides_of_zero() {
         }
     }
 }
+
+/// The file's texture by other members than a source.
+fn with_texture(bytes: &[u8], texture: &str, image: &str, name: &str) -> Scene {
+    let json = File { image, ..masked(bytes) }.json();
+    let json = json.replace(r#"{"source": 0, "sampler": 0}"#, texture);
+    let scene = read(&file(name, glb_with(&json, &buffer(bytes))));
+    assert_valid(&scene);
+    scene
+}
+
+const WEBP: &str = r#"{"extensions": {"EXT_texture_webp": {"source": 0}}}"#;
+
+#[test]
+fn webp_is_read_as_png_is_and_a_source_of_the_core_format_comes_first() {
+    let alpha = [255, 0, 127, 128, 200, 3];
+    let expected = masked(&png(2, &alpha)).read("png.glb");
+    let webp = encoded(&picture(2, &alpha), ImageFormat::WebP);
+    let image = r#""bufferView": 3, "mimeType": "image/webp""#;
+    let scene = with_texture(&webp, WEBP, image, "webp.glb");
+    assert_eq!((&scene.meshes, &scene.warnings), (&expected.meshes, &expected.warnings));
+    // as some write it, without the extension
+    let core = r#"{"source": 0, "sampler": 0}"#;
+    assert_eq!(with_texture(&webp, core, image, "webp_core.glb").meshes, expected.meshes);
+    // a PNG beside one that is not even there
+    let both = r#"{"source": 0, "extensions": {"EXT_texture_webp": {"source": 9},
+        "KHR_texture_basisu": {"source": 8}}}"#;
+    let scene = with_texture(&png(2, &alpha), both, EMBEDDED, "both.glb");
+    assert_eq!(scene.meshes, expected.meshes);
+}
+
+#[test]
+fn masks_in_images_that_nobody_here_decodes_are_opaque_and_named() {
+    let opaque = "which is not read, so it is opaque: convert the image to PNG";
+    for (texture, what) in [
+        (
+            r#"{"extensions": {"KHR_texture_basisu": {"source": 0}}}"#,
+            "an image of the extension `KHR_texture_basisu`",
+        ),
+        (
+            r#"{"extensions": {"EXT_texture_avif": {"source": 0}}}"#,
+            "an image of the extension `EXT_texture_avif`",
+        ),
+        ("{}", "a texture without an image"),
+    ] {
+        let scene = with_texture(b"x", texture, EMBEDDED, "unread.glb");
+        assert_eq!(mesh_of(&scene), (true, 0));
+        assert_eq!(scene.warnings, [format!("mesh `x`: its mask is {what}, {opaque}")]);
+    }
+    for (start, what) in [
+        (&b"\xabKTX 20\xbb\r\n\x1a\n"[..], "a KTX2 image"),
+        (b"\0\0\0\x1cftypavif\0\0\0\0", "an AVIF image"),
+        (b"DDS |\0\0\0", "a DDS image"),
+        (b"\xff\x0a\0\0", "a JPEG XL image"),
+    ] {
+        let core = r#"{"source": 0, "sampler": 0}"#;
+        let scene = with_texture(start, core, EMBEDDED, "unread_core.glb");
+        assert_eq!(mesh_of(&scene), (true, 0));
+        assert_eq!(scene.warnings, [format!("mesh `x`: its mask is {what}, {opaque}")]);
+    }
+}
+
+#[test]
+fn required_texture_transforms_are_honoured_without_a_warning() {
+    let image = png(2, &[255, 0, 0, 255]);
+    let transform = r#""index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}"#;
+    let material = MASKED.replace("\"index\": 0", transform);
+    let json = File { material: &material, ..masked(&image) }.json();
+    let json = json.replace("extensionsUsed", "extensionsRequired");
+    let scene = read(&file("required_transform.glb", glb_with(&json, &buffer(&image))));
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(at_corners(&scene), CORNERS.map(|[u, v]| vec2(u + 0.5, v)));
+}
+
+#[test]
+fn unknown_alpha_modes_are_opaque_and_named() {
+    let material = MASKED.replace("MASK", "DITHER");
+    let scene = File { material: &material, ..masked(b"x") }.read("dither.glb");
+    assert_eq!(mesh_of(&scene), (true, 0));
+    let what = "mesh `x`: alphaMode `DITHER` is not known, so it is opaque";
+    assert_eq!(scene.warnings, [what]);
+}

@@ -123,7 +123,7 @@ fn step(value: &mut [u8; 4], codes: [u8; 4], mode: u8) -> Option<()> {
             }
         }
         (2, rotation) => {
-            let by = u32::from_le_bytes(codes).rotate_left(rotation.into());
+            let by = u32::from_le_bytes(codes).rotate_right(rotation.into());
             *value = (u32::from_le_bytes(*value) ^ by).to_le_bytes();
         }
         _ => return None,
