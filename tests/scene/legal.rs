@@ -6,6 +6,12 @@ use serde_json::{Value, json};
 use crate::model::{Model, PLATE, lit};
 use crate::{error, file};
 
+/// What a test does to a document.
+type Change = fn(&mut Value);
+
+/// A part of a document.
+type Part = fn(&mut Value) -> &mut Value;
+
 /// A floor and a lid under a light, and how the lid's shadow lies.
 fn model() -> Model {
     let mut model = Model::new();
@@ -22,7 +28,7 @@ fn assert_shadow(model: &Model, name: &str, warnings: &[&str]) {
 
 #[test]
 fn parts_that_shadows_never_read_may_be_anything() {
-    let cases: [(&str, fn(&mut Value)); 26] = [
+    let cases: [(&str, Change); 26] = [
         ("texture_without_source", |it| it["textures"] = json!([{}, { "sampler": 9 }])),
         ("texture_of_later", |it| {
             it["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }])
@@ -188,7 +194,7 @@ fn unread_extensions_that_may_change_geometry_are_named_once() {
 
 #[test]
 fn required_extensions_that_a_mesh_needs_are_an_error() {
-    let place: [(&str, fn(&mut Value) -> &mut Value); 4] = [
+    let place: [(&str, Part); 4] = [
         ("primitive", |it| &mut it["meshes"][1]["primitives"][0]),
         ("accessor", |it| &mut it["accessors"][2]),
         ("view", |it| &mut it["bufferViews"][2]),
@@ -211,7 +217,7 @@ fn required_extensions_that_a_mesh_needs_are_an_error() {
 
 #[test]
 fn parts_that_a_mesh_needs_are_named_when_they_are_broken() {
-    let cases: [(&str, fn(&mut Value)); 12] = [
+    let cases: [(&str, Change); 12] = [
         ("mesh `lid`: accessors[9] is not there: there are 4", |it| {
             it["meshes"][1]["primitives"][0]["attributes"]["POSITION"] = json!(9)
         }),

@@ -46,7 +46,9 @@ fn angles_that_are_left_out_are_none_and_45_degrees() {
 
 #[test]
 fn angles_of_a_hard_edge_or_a_whole_hemisphere_are_no_fault() {
-    for (inner, outer) in [(0.5, 0.5), (0.0, 1.5707963267948966), (1.0, 1.5707964)] {
+    for (inner, outer) in
+        [(0.5, 0.5), (0.0, std::f64::consts::FRAC_PI_2), (1.0, f64::from(FRAC_PI_2))]
+    {
         let spot = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
         let (found, warnings) = light(json!({ "type": "spot", "spot": spot }));
         let cone = found.cone.unwrap();

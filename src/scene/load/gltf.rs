@@ -87,7 +87,6 @@ struct Skipped {
     points_or_lines: usize,
     unknown_modes: usize,
     without_positions: usize,
-    hidden: usize,
     directional: usize,
     dark: usize,
     /// Kinds of lights.
@@ -139,8 +138,6 @@ impl<'a> Reader<'a> {
                     self.mesh(mesh, node, world)?;
                 }
                 self.light(node, &world);
-            } else {
-                self.skipped.hidden += usize::from(node.mesh.is_some());
             }
             if let (Some(camera), None) = (node.camera, &self.contents.camera) {
                 self.contents.camera = light::camera(self.document, camera, &world);

@@ -38,7 +38,7 @@ pub(super) fn unpack(packed: &Packed, stream: &[u8]) -> Result<Vec<u8>, String> 
         _ => Err(format!("its indices have {stride} bytes")),
     };
     let found = match mode.as_str() {
-        "ATTRIBUTES" if stride % 4 == 0 && (4..=256).contains(stride) => {
+        "ATTRIBUTES" if stride.is_multiple_of(4) && (4..=256).contains(stride) => {
             attributes::unpack(stream, *count, *stride)
         }
         "ATTRIBUTES" => return Err(format!("its elements have {stride} bytes")),

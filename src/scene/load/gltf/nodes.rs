@@ -135,7 +135,9 @@ fn all_roots(document: &Document) -> Vec<usize> {
         // those that cannot be read are named where they are needed
         let Ok(node) = document.get::<Node>("nodes", index) else { continue };
         for child in node.children {
-            is_root.get_mut(child).map(|root| *root = false);
+            if let Some(root) = is_root.get_mut(child) {
+                *root = false;
+            }
         }
     }
     (0..count).filter(|&index| is_root[index]).collect()

@@ -53,15 +53,13 @@ pub(super) fn unpack(stream: &[u8], count: usize, stride: usize) -> Option<Vec<u
             None => CONTROLS_0,
             Some(packed) => CONTROLS_1[usize::from(packed >> (2 * (byte % 4)) & 3)],
         };
-        let mut columns = Vec::with_capacity(stride);
-        for byte in 0..stride {
-            columns.push(column(&mut bytes, elements, control(byte))?);
-        }
+        let columns = (0..stride).map(|byte| column(&mut bytes, elements, control(byte)));
+        let columns: Vec<Vec<u8>> = columns.collect::<Option<_>>()?;
         for element in 0..elements {
-            for channel in 0..channels {
-                let codes = std::array::from_fn(|i| columns[channel * 4 + i][element]);
-                let value = &mut last[channel * 4..][..4];
-                step(value.try_into().ok()?, codes, mode(channel))?;
+            let (columns, values) = (columns.as_chunks::<4>().0, last.as_chunks_mut().0);
+            for (channel, (columns, value)) in columns.iter().zip(values).enumerate() {
+                let codes = columns.each_ref().map(|column| column[element]);
+                step(value, codes, mode(channel))?;
             }
             out.extend(&last);
         }

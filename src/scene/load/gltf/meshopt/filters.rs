@@ -12,7 +12,7 @@ pub(super) fn apply(filter: &str, stride: usize, bytes: &mut [u8]) -> Result<(),
         }
         ("OCTAHEDRAL", 8) => of_words(bytes, |words| octahedral(words.map(f32::from), 32767.0)),
         ("QUATERNION", 8) => of_words(bytes, quaternion),
-        ("EXPONENTIAL", _) if stride % 4 == 0 => {
+        ("EXPONENTIAL", _) if stride.is_multiple_of(4) => {
             for number in bytes.as_chunks_mut().0 {
                 *number = exponential(i32::from_le_bytes(*number)).to_le_bytes();
             }

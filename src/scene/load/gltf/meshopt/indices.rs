@@ -97,7 +97,7 @@ impl Triangles<'_> {
 /// Indices of a list of triangles; `None` for a stream that ends early or cannot be.
 pub(super) fn triangles(stream: &[u8], count: usize) -> Option<Vec<u32>> {
     let (&version, rest) = stream.split_first()?;
-    if version != TRIANGLES || count % 3 != 0 {
+    if version != TRIANGLES || !count.is_multiple_of(3) {
         return None;
     }
     let (codes, rest) = rest.split_at_checked(count / 3)?;

@@ -1,54 +1,36 @@
-//! Files of scenes: the first byte says which kind, the rest is the file; `.mtl` of an OBJ follows
-//! it after a NUL. Or the rest alters a good file.
-#![no_main]
-
-mod altered;
-mod common;
+//! What the targets of scenes share: files are read from a folder, and what comes is looked at.
 
 use std::fs;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use dpsm::scene::{Options, Scene, open};
-use libfuzzer_sys::fuzz_target;
+use glam::DVec3;
 
 /// The loader takes paths, so each process has a folder; tools/fuzz sets one in memory.
-static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
+pub static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let folder = std::env::temp_dir().join(format!("dpsm-fuzz-{}", std::process::id()));
     fs::create_dir_all(&folder).unwrap();
     folder
 });
 
-fuzz_target!(init: common::keep_panics(), |bytes: &[u8]| {
-    let Some((&kind, file)) = bytes.split_first() else { return };
-    common::no_panic(|| run(kind, file));
-});
-
-fn run(kind: u8, file: &[u8]) {
-    let altered = if kind == b'a' { altered::glb(file) } else { Vec::new() };
-    let (name, bytes) = match kind {
-        b'o' => {
-            let mut parts = file.splitn(2, |byte| *byte == 0);
-            let obj = parts.next().unwrap_or_default();
-            fs::write(FOLDER.join("a.mtl"), parts.next().unwrap_or_default()).unwrap();
-            ("a.obj", obj)
-        }
-        b't' => ("a.gltf", file),
-        b'b' => ("a.glb", file),
-        b'a' => ("a.glb", altered.as_slice()),
-        _ => return,
-    };
+/// Reads a file as it is, and around a point far from it.
+pub fn read(name: &str, bytes: &[u8]) {
     let path = FOLDER.join(name);
     fs::write(&path, bytes).unwrap();
-    match open(&path.to_string_lossy(), &Options::default()) {
-        Ok(scene) => look_at(&scene),
-        Err(error) => drop(error.to_string()),
+    for around in [None, Some(DVec3::new(4_429_529.812_5, 0.1, -5_820_128.437_5))] {
+        let options = Options { around, ..Options::default() };
+        match open(&path.to_string_lossy(), &options) {
+            Ok(scene) => look_at(&scene),
+            Err(error) => drop(error.to_string()),
+        }
     }
 }
 
 /// What the fields' documentation promises.
 fn look_at(scene: &Scene) {
     assert!(scene.triangle_count() > 0);
+    assert!(scene.origin.is_finite(), "an origin");
     for mesh in &scene.meshes {
         assert!(mesh.positions.iter().all(|p| p.is_finite()), "a position");
         assert_eq!(mesh.positions.len(), mesh.normals.len());
@@ -70,6 +52,11 @@ fn look_at(scene: &Scene) {
         assert!(light.position.is_finite(), "a light");
         assert!((light.color.max_element() - 1.0).abs() < 1e-6, "a colour");
         assert!(light.axis.is_none_or(|axis| (axis.length() - 1.0).abs() < 1e-5), "an axis");
+        if let Some(cone) = light.cone {
+            assert!(light.axis.is_some() && cone.inner >= 0.0 && cone.inner < cone.outer, "a cone");
+            assert!(cone.outer <= std::f32::consts::FRAC_PI_2, "a cone");
+        }
+        assert!(light.range.is_none_or(|range| range > 0.0 && range.is_finite()), "a range");
     }
     let light = scene.default_light();
     let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
