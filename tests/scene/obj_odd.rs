@@ -189,7 +189,7 @@ fn shapes(corners: usize) -> [(&'static str, Vec<[f64; 2]>); 6] {
         [radius * cos, radius * sin]
     };
     let half = corners / 2;
-    let zigzag = |i: usize| if i % 2 == 0 { 0.0 } else { 9.0 };
+    let zigzag = |i: usize| if i.is_multiple_of(2) { 0.0 } else { 9.0 };
     let saw = (0..half).map(|i| [i as f64, zigzag(i)]);
     let back = (0..half).rev().map(|i| [i as f64, zigzag(i) + 0.5]);
     let quarter = corners / 4;

@@ -148,7 +148,7 @@ fn meshopt_filters_give_unit_vectors_and_quaternions_back() {
         for (normal, at) in mesh.normals.iter().zip(&mesh.positions) {
             let i = (at.z * 4.0) as usize * WIDTH + (at.x * 4.0) as usize;
             let (sin, cos) = (i as f32 * 0.1).sin_cos();
-            let expected = vec3(0.6 * cos, 0.6 * sin, if i % 2 == 0 { 0.8 } else { -0.8 });
+            let expected = vec3(0.6 * cos, 0.6 * sin, if i.is_multiple_of(2) { 0.8 } else { -0.8 });
             assert!(normal.distance(expected) < error, "{name} {i}: {normal} {expected}");
         }
     }
