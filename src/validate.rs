@@ -6,11 +6,11 @@ use std::fmt;
 use std::panic::catch_unwind;
 use std::thread;
 
-use naga::Span;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Expression, Function, SampleLevel, Span, Statement};
 
 use crate::link::token::{Source, tokenize};
-use crate::link::{Catalogue, Linked, ModuleInfo};
+use crate::link::{Catalogue, Linked, ModuleInfo, Note};
 
 /// A module that naga accepts.
 #[derive(Debug)]
@@ -32,6 +32,10 @@ pub enum ValidateError {
     /// The text is WGSL that breaks a rule.
     #[error("{0}")]
     Rule(Report),
+
+    /// Another tool must finish the text before a compiler can read it.
+    #[error("{}: no WGSL yet: {}; {}", .0.place, .0.what, .0.remedy)]
+    Unfinished(Note),
 
     /// naga panicked.
     #[error("naga failed on {file}: {message}")]
@@ -138,6 +142,9 @@ const MOST_DECLARATIONS: usize = 100_000;
 /// ```
 pub fn validate(linked: &Linked) -> Result<Validated, ValidateError> {
     let file = || linked.name().to_owned();
+    if let Some(note) = linked.notes().iter().find(|note| note.unfinished) {
+        return Err(ValidateError::Unfinished(note.clone()));
+    }
     let (depth, declarations) = extent(&linked.text);
     if depth > DEEPEST {
         let limit = DEEPEST;
@@ -166,7 +173,8 @@ fn check(linked: &Linked) -> Result<Validated, ValidateError> {
     let module = naga::front::wgsl::parse_str(&linked.text).map_err(|error| {
         let labels = error.labels().map(|(span, text)| (span, text.to_owned()));
         let notes = error.notes().map(|note| format!("note: {note}"));
-        let notes = notes.chain(missing_import(error.message()));
+        let notes =
+            notes.chain(missing_import(error.message())).chain(other_compiler(error.message()));
         ValidateError::Parse(Report {
             name: linked.name().to_owned(),
             message: error.message().to_owned(),
@@ -191,6 +199,69 @@ fn check(linked: &Linked) -> Result<Validated, ValidateError> {
         })
     })?;
     Ok(Validated { module, info })
+}
+
+impl Validated {
+    /// What WGSL allows in uniform control flow only and naga accepts anywhere: derivatives, samples
+    /// whose level comes from derivatives, barriers and subgroup operations.
+    ///
+    /// ```
+    /// let text = "fn f(x: f32) -> f32 { if x > 0.0 { return dpdx(x); } return 0.0; }";
+    /// let linked = dpsm::link_source("my.wesl", text)?;
+    /// let places = dpsm::validate(&linked)?.unchecked(&linked);
+    /// assert_eq!((places[0].file.as_str(), places[0].line), ("my.wesl", 1));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn unchecked(&self, linked: &Linked) -> Vec<Label> {
+        let functions = self.module.functions.iter().map(|(_, function)| function);
+        let functions =
+            functions.chain(self.module.entry_points.iter().map(|point| &point.function));
+        let spans: Vec<_> = functions.flat_map(unchecked).collect();
+        let spans = spans.into_iter().map(|span| (span, String::new()));
+        let mut places = labels(linked, spans);
+        places.sort_by(|a, b| (&a.file, a.line, a.column).cmp(&(&b.file, b.line, b.column)));
+        places.dedup();
+        places
+    }
+}
+
+fn unchecked(function: &Function) -> Vec<Span> {
+    let asks = |expression: &Expression| match expression {
+        Expression::ImageSample { level, .. } => {
+            matches!(level, SampleLevel::Auto | SampleLevel::Bias(_))
+        }
+        Expression::Derivative { .. }
+        | Expression::SubgroupBallotResult
+        | Expression::SubgroupOperationResult { .. } => true,
+        _ => false,
+    };
+    let all = function.expressions.iter().filter(|(_, expression)| asks(expression));
+    let mut spans: Vec<_> = all.map(|(handle, _)| function.expressions.get_span(handle)).collect();
+    let mut blocks = vec![&function.body];
+    while let Some(block) = blocks.pop() {
+        for (statement, span) in block.span_iter() {
+            match statement {
+                Statement::ControlBarrier(_) | Statement::WorkGroupUniformLoad { .. } => {
+                    spans.push(*span);
+                }
+                Statement::Block(inner) => blocks.push(inner),
+                Statement::If { accept, reject, .. } => blocks.extend([accept, reject]),
+                Statement::Loop { body, continuing, .. } => blocks.extend([body, continuing]),
+                Statement::Switch { cases, .. } => {
+                    blocks.extend(cases.iter().map(|case| &case.body))
+                }
+                _ => {}
+            }
+        }
+    }
+    spans
+}
+
+/// Where naga does not know an extension, another compiler may.
+fn other_compiler(message: &str) -> Option<String> {
+    let extension = message.contains("enable-extension") || message.contains("language extension");
+    let hint = "note: another compiler may know it: `dpsm link` passes it on without asking naga";
+    extension.then(|| hint.to_owned())
 }
 
 /// The import to add, where an unknown identifier is one of dpsm's own.

@@ -299,13 +299,16 @@ fn unknown_modules_name_the_nearest_one() {
     );
     assert_eq!(
         user_error(&all, "import dpsm::elsewhere::{increment};"),
-        "my.wesl:1: unknown module `elsewhere`"
+        "my.wesl:1: unknown module `elsewhere`; there is `base`"
     );
     assert_eq!(
         toys().link(&["midle"]).unwrap_err().to_string(),
-        "midle: unknown module `midle`; did you mean `middle`?"
+        "midle: unknown module `midle`; did you mean `middle`? There are `middle`, `base`"
     );
-    assert_eq!(toys().link(&[""]).unwrap_err().to_string(), ": unknown module ``");
+    assert_eq!(
+        toys().link(&[""]).unwrap_err().to_string(),
+        ": unknown module ``; there are `base`, `middle`"
+    );
 }
 
 #[test]
@@ -313,7 +316,8 @@ fn unknown_items_name_the_nearest_one() {
     let all = [("middle", MIDDLE), ("base", BASE)];
     assert_eq!(
         user_error(&all, "import dpsm::base::{\n  ONE,\n  incremnt,\n};"),
-        "my.wesl:3: unknown item `incremnt` in module `base`; did you mean `increment`?"
+        "my.wesl:3: unknown item `incremnt` in module `base`; did you mean `increment`? \
+         There are `increment`, `unused`, `ONE`, `TWO`"
     );
     assert_eq!(
         user_error(&all, "import dpsm::middle::{ONE};"),
@@ -321,7 +325,8 @@ fn unknown_items_name_the_nearest_one() {
     );
     assert_eq!(
         toys().link(&["base::incremnt"]).unwrap_err().to_string(),
-        "base::incremnt: unknown item `incremnt` in module `base`; did you mean `increment`?"
+        "base::incremnt: unknown item `incremnt` in module `base`; did you mean `increment`? \
+         There are `increment`, `unused`, `ONE`, `TWO`"
     );
     let broken = catalogue(&[("a", "\n\nimport super::b::{nothing};"), ("b", "")]).unwrap();
     assert_eq!(
@@ -497,8 +502,8 @@ fn dpsm_modules_need_the_prefix() {
 fn users_shader_must_not_take_the_prefix() {
     let all = [("a", "fn dpsm_one() {}\nfn dpsm_two() {}")];
     assert_eq!(
-        user_error(&all, "import dpsm::a::dpsm_one;\nfn dpsm_two() {}"),
-        "my.wesl:2: `dpsm_two` has a prefix that is reserved for dpsm's modules; use `two`"
+        user_error(&all, "import dpsm::a::dpsm_one;\nfn dpsm_mine() {}"),
+        "my.wesl:2: `dpsm_mine` has a prefix that is reserved for dpsm's modules; use `mine`"
     );
     assert_eq!(
         user_error(&all, "struct DpsmLight { x: f32 }"),

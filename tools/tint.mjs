@@ -1,21 +1,19 @@
-// Validates WGSL files with Tint; prints each message and fails where one is an error.
+// Validates the WGSL on standard input with Tint; prints its messages as one line of JSON.
 import { readFileSync } from 'node:fs';
 import { create } from 'webgpu';
 
 // global, as Dawn ends where nothing refers to it any more
 globalThis.gpu = create(['backend=null']);
 const adapter = await gpu.requestAdapter();
-const device = await adapter.requestDevice();
-let errors = 0;
-for (const path of process.argv.slice(2)) {
-  device.pushErrorScope('validation');
-  const module = device.createShaderModule({ code: readFileSync(path, 'utf8') });
-  const { messages } = await module.getCompilationInfo();
-  for (const { type, lineNum, linePos, message } of messages) {
-    console.log(`${path}:${lineNum}:${linePos}: ${type}: ${message}`);
-    errors += type === 'error';
-  }
-  if (await device.popErrorScope()) errors += messages.length === 0;
+// every extension that there is
+const device = await adapter.requestDevice({ requiredFeatures: [...adapter.features] });
+device.pushErrorScope('validation');
+const module = device.createShaderModule({ code: readFileSync(0, 'utf8') });
+const info = await module.getCompilationInfo();
+const messages = info.messages.map(({ type, message, lineNum: line, linePos: column }) =>
+  ({ type, message, line, column }));
+const error = await device.popErrorScope();
+if (error && !messages.some(({ type }) => type === 'error')) {
+  messages.push({ type: 'error', message: error.message, line: 0, column: 0 });
 }
-console.log(`Tint: ${process.argv.length - 2} files, ${errors} errors`);
-process.exit(errors ? 1 : 0);
+process.stdout.write(JSON.stringify(messages) + '\n', () => process.exit(0));

@@ -5,6 +5,7 @@ mod common;
 
 use std::sync::LazyLock;
 
+use dpsm::link::Features;
 use dpsm::{Catalogue, Linked};
 use libfuzzer_sys::fuzz_target;
 
@@ -44,20 +45,51 @@ fn run(input: &str) {
             Ok(catalogue) => catalogue.link_source("my.wesl", IMPORTING),
             Err(error) => return drop(error.to_string()),
         },
+        // conditions of a shader and of a module, decided as the line says
+        ["features", given @ ..] => {
+            let all = DPSM.clone().features(features(given));
+            match all.clone().with("mine", "mine.wesl", text) {
+                Ok(all) => look_at(all.link(&["mine"])),
+                Err(error) => drop(error.to_string()),
+            }
+            all.link_source("my.wesl", text)
+        }
         _ => DPSM.link_source("my.wesl", input),
     });
 }
 
+/// `A`, `B=false`, `*=false`.
+fn features(given: &[&str]) -> Features {
+    given.iter().fold(Features::new(), |features, word| {
+        let (name, value) = word.split_once('=').unwrap_or((word, "true"));
+        let on = value == "true";
+        if name == "*" { features.others(on) } else { features.with(name, on) }
+    })
+}
+
 const IMPORTING: &str = "import super::mine::{f};\nfn g() -> f32 { return f(); }";
 
-/// Every line has an origin or is the linker's own, and naga accepts the text or we say why not.
+/// Every line has an origin or is the linker's own, nothing is in it but its source line's
+/// characters, and naga accepts the text or we say why not.
 fn look_at(linked: Result<Linked, dpsm::LinkError>) {
     let linked = match linked {
         Ok(linked) => linked,
         Err(error) => return drop(error.to_string()),
     };
-    for line in 0..=linked.text.lines().count() + 1 {
+    for line in 0..=linked.text.split('\n').count() + 1 {
         assert_eq!(linked.origin(line).is_some(), linked.source_line(line).is_some());
+    }
+    for (index, line) in linked.text.split('\n').enumerate() {
+        let Some(whole) = linked.source_line(index + 1) else { continue };
+        // behind the thousandth column a part of a line starts there
+        if whole.len() < 1000 {
+            let fits = |(new, old): (char, char)| new == old || new == ' ' || new == '\t';
+            assert!(line.chars().zip(whole.chars()).all(fits), "{line:?} of {whole:?}");
+            assert!(line.chars().count() <= whole.chars().count());
+        }
+    }
+    for note in linked.notes() {
+        drop(note.to_string());
     }
     if let Err(error) = dpsm::validate(&linked) {
         drop(error.to_string());

@@ -59,6 +59,12 @@ pub enum CliError {
     /// WGSL that is not valid.
     #[error(transparent)]
     Validate(#[from] ValidateError),
+    /// WGSL that Tint refuses.
+    #[error("{0}\nrefused by Tint")]
+    Refused(String),
+    /// Tint that is not there.
+    #[error("no Tint: {0}; without --tint, naga alone is asked")]
+    NoTint(String),
     /// The adapter.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -111,6 +117,7 @@ impl CliError {
                 | GpuError::Hung { .. },
             )
             | CliError::Encode { .. }
+            | CliError::NoTint(_)
             | CliError::Outside(_)
             | CliError::Exr { .. } => 1,
             _ => 2,

@@ -4,14 +4,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use dpsm::Catalogue;
 use dpsm::accuracy::{Judge, Verdict, bits};
 use dpsm::cases;
 use dpsm::gpu::{Device, Evaluator, GpuError};
+use dpsm::link::LinkError;
 use dpsm::reflect::{Component, Kind, Signature};
 use dpsm::scalar::ports::{self, Word};
 use dpsm::ulp::{ulps_apart, ulps_off};
 
-use super::output::write_or_print;
+use super::output::{print, write_or_print};
 use super::table::Table;
 use super::{AdapterChoice, CliError, search};
 
@@ -29,13 +31,17 @@ random, spaced evenly over all floats, and at edges; above the bound the exit co
 Examples:
   dpsm eval --exhaustive -o errors.csv          (every function; hours)
   dpsm eval dpsm_project --exhaustive --points 1000000
+  dpsm eval --list                              (functions and what they take)
   dpsm eval dpsm_project
   dpsm eval dpsm_project --input points.csv     (header p.x,p.y,p.z)
   dpsm eval dpsm_depth --input depths.csv -o errors.csv")]
 pub struct EvalArguments {
     /// The function's name; with --exhaustive by default every function
-    #[arg(required_unless_present = "exhaustive")]
+    #[arg(required_unless_present_any = ["exhaustive", "list"])]
     function: Option<String>,
+    /// Print every function that can be evaluated, with the components of its arguments
+    #[arg(long, conflicts_with_all = ["function", "exhaustive", "input", "output"])]
+    list: bool,
     /// Search the port's errors over the whole domain instead
     #[arg(long, conflicts_with = "input")]
     exhaustive: bool,
@@ -59,6 +65,9 @@ pub struct Record {
 }
 
 pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), CliError> {
+    if arguments.list {
+        return print(&list()?);
+    }
     if arguments.exhaustive {
         let function = arguments.function.as_deref();
         return search::search(function, arguments.points, arguments.output.as_deref());
@@ -89,13 +98,37 @@ pub fn inputs(arguments: &EvalArguments) -> Result<(Signature, Vec<Record>), Cli
 
 pub fn signature(function: &str) -> Result<Signature, CliError> {
     let unsupported = |reason| GpuError::Unsupported { function: function.to_string(), reason };
-    let validated = dpsm::validate(&dpsm::link::link_function(function)?)?;
+    let linked = dpsm::link::link_function(function).map_err(|error| match error {
+        LinkError::UnknownFunction { .. } => {
+            CliError::Usage(format!("{error}; `dpsm eval --list` shows all"))
+        }
+        error => error.into(),
+    })?;
+    let validated = dpsm::validate(&linked)?;
     let signature = Signature::of(&validated.module, function).map_err(unsupported)?;
     if signature.needs_resources() {
         let reason = "it takes a texture; `dpsm render` runs it on real maps".to_string();
         return Err(unsupported(reason).into());
     }
     Ok(signature)
+}
+
+/// Each function with what it takes: `dpsm_project(p.x, p.y, p.z)`.
+fn list() -> Result<String, CliError> {
+    let modules = Catalogue::dpsm()?.describe();
+    let names: Vec<_> = modules.iter().map(|module| module.name.as_str()).collect();
+    let validated = dpsm::validate(&dpsm::link(&names)?)?;
+    let items = modules.iter().flat_map(|module| &module.items).filter(|item| item.kind == "fn");
+    let mut lines: Vec<_> = items
+        .filter_map(|item| Signature::of(&validated.module, &item.name).ok())
+        .filter(|signature| !signature.needs_resources())
+        .map(|signature| {
+            let inputs: Vec<_> = signature.inputs().into_iter().map(|input| input.path).collect();
+            format!("{}({})\n", signature.name, inputs.join(", "))
+        })
+        .collect();
+    lines.sort();
+    Ok(lines.concat())
 }
 
 fn on_adapter(device: &Device, function: &str, records: &[Record]) -> Result<Vec<u32>, CliError> {

@@ -16,6 +16,7 @@ mod search;
 mod setup;
 mod table;
 mod text;
+mod tint;
 
 pub use error::CliError;
 

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use super::parse::Tokens;
+
 /// A line of a file, both as the user knows them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -24,17 +26,64 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what the fields are
 pub enum LinkError {
-    /// No module has this name.
-    #[error("{place}: unknown module `{name}`{}", did_you_mean(near))]
-    UnknownModule { place: Place, name: String, near: Option<String> },
+    /// No module has this name; `present` are those that there are, the nearest first.
+    #[error("{place}: unknown module `{name}`{}{}", did_you_mean(near), there_is(near, present))]
+    UnknownModule { place: Place, name: String, near: Option<String>, present: Vec<String> },
 
-    /// The module does not declare this name.
-    #[error("{place}: unknown item `{name}` in module `{module}`{}", did_you_mean(near))]
-    UnknownItem { place: Place, module: String, name: String, near: Option<String> },
+    /// The module does not declare this name; `present` are those that it does.
+    #[error(
+        "{place}: unknown item `{name}` in module `{module}`{}{}",
+        did_you_mean(near),
+        there_is(near, present)
+    )]
+    UnknownItem {
+        place: Place,
+        module: String,
+        name: String,
+        near: Option<String>,
+        present: Vec<String>,
+    },
 
     /// No module declares a function of this name.
-    #[error("unknown function `{name}`{}", did_you_mean(near))]
-    UnknownFunction { name: String, near: Option<String> },
+    #[error("unknown function `{name}`{}{}", did_you_mean(near), there_is(near, present))]
+    UnknownFunction { name: String, near: Option<String>, present: Vec<String> },
+
+    /// A name that stands for something else than what was asked for.
+    #[error("`{name}` is {what}; {instead}")]
+    OtherKind { name: String, what: String, instead: String },
+
+    /// An import of a file that there is not.
+    #[error("{place}: no module `{name}`: {what}")]
+    NoFile { place: Place, name: String, what: String },
+
+    /// A file that is no text to link.
+    #[error("{}{path}: {what}", imported_at(place))]
+    Unreadable { place: Option<Place>, path: String, what: String },
+
+    /// A condition in a wrong form or place.
+    #[error("{place}: {what}")]
+    Condition { place: Place, what: String },
+
+    /// Features were given, but not this one, which a condition asks for.
+    #[error(
+        "{place}: the feature `{name}` is not given{}; add `--feature {name}` or \
+         `--feature {name}=false`",
+        did_you_mean(near)
+    )]
+    FeatureNotGiven { place: Place, name: String, near: Option<String> },
+
+    /// Another tool's import of one of dpsm's modules, which would be missing.
+    #[error(
+        "{place}: `{what}` is another tool's line, by which dpsm links nothing; write `{instead}`"
+    )]
+    ForeignImport { place: Place, what: String, instead: String },
+
+    /// A line of another tool in a module, of which only some declarations are taken.
+    #[error(
+        "{place}: `{what}` is a line of {tool}, which only the shader itself may hold, not a module \
+         that it imports; run that tool on the module first, or write `@if(NAME)`"
+    )]
+    ForeignLine { place: Place, what: String, tool: &'static str },
 
     /// Modules import each other in a ring; the place is the import that closes it.
     #[error("{place}: import cycle: {}", chain.join(" -> "))]
@@ -78,8 +127,38 @@ pub enum LinkError {
     Malformed { place: Place, what: String },
 }
 
+pub(crate) fn condition(tokens: &Tokens, at: usize, what: String) -> LinkError {
+    LinkError::Condition { place: tokens.source.place(tokens.offset(at)), what }
+}
+
 fn did_you_mean(near: &Option<String>) -> String {
     near.as_ref().map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
+}
+
+/// Names that a message lists at the most.
+const LISTED: usize = 24;
+
+/// What there is, after [`did_you_mean`].
+fn there_is(near: &Option<String>, present: &[String]) -> String {
+    let said = match near {
+        Some(near) if present == [near.as_str()] => return String::new(),
+        Some(_) => " There",
+        None => "; there",
+    };
+    let names: Vec<_> = present.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
+    let more = match present.len().saturating_sub(LISTED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    match present {
+        [] => String::new(),
+        [_] => format!("{said} is {}", names.join(", ")),
+        _ => format!("{said} are {}{more}", names.join(", ")),
+    }
+}
+
+fn imported_at(place: &Option<Place>) -> String {
+    place.as_ref().map_or_else(String::new, |place| format!("{place}: "))
 }
 
 fn use_instead(near: &Option<String>) -> String {

@@ -110,10 +110,25 @@ pub(crate) fn without_prefix(name: &str) -> Option<&str> {
     PREFIXES.iter().find_map(|prefix| name.strip_prefix(prefix))
 }
 
+/// Longer names are no slips, and the distance takes time by the product of the lengths.
+const LONGEST: usize = 64;
+
+/// Candidates, those nearest to a name first; each once.
+pub(crate) fn by_nearness<'a>(
+    name: &str,
+    candidates: impl Iterator<Item = &'a str>,
+) -> Vec<String> {
+    let distance = |candidate: &str| match name.len().max(candidate.len()) > LONGEST {
+        true => usize::MAX,
+        false => strsim::damerau_levenshtein(name, candidate),
+    };
+    let all: std::collections::BTreeSet<_> =
+        candidates.map(|candidate| (distance(candidate), candidate)).collect();
+    all.into_iter().map(|(_, candidate)| candidate.to_owned()).collect()
+}
+
 /// The candidate nearest to a name, if a slip of the keyboard could have made one of the other.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<String> {
-    // Longer names are no slips, and the distance takes time by the product of the lengths.
-    const LONGEST: usize = 64;
     let limit = (name.chars().count() / 3).max(1);
     candidates
         .filter(|candidate| name.len() <= LONGEST && candidate.len() <= LONGEST)

@@ -3,31 +3,39 @@
 mod comments;
 mod import;
 mod item;
+mod loose;
+mod tokens;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::error::LinkError;
-use super::token::{Kind, Source, Token, tokenize};
-pub(crate) use import::{is_module_name, strip_root};
+use super::error::{LinkError, condition as wrong_condition};
+use super::foreign::{Mark, Tool};
+use super::token::Source;
+pub(crate) use import::{Root, is_module_name, strip_root};
+pub(crate) use tokens::Tokens;
 
 pub(crate) type Offsets = BTreeMap<String, usize>;
 
 /// One imported name.
 #[derive(Clone, Debug)]
 pub(crate) struct Import {
+    pub root: Root,
+    /// The module's path, with `::`.
     pub module: String,
     pub item: String,
     pub at: usize,
+    /// Whether a condition stands before it.
+    pub conditional: bool,
 }
 
 /// A declaration at module scope.
 #[derive(Clone, Debug)]
 pub(crate) struct Item {
-    /// Its keyword: `fn`, `struct`, ...
+    /// Its keyword: `fn`, `struct`, ...; `text` for what is no declaration of WGSL.
     pub kind: &'static str,
-    /// None for `const_assert`.
+    /// None for `const_assert` and `text`.
     pub name: Option<String>,
     /// Offset of the name, or of the keyword.
     pub at: usize,
@@ -38,12 +46,18 @@ pub(crate) struct Item {
     pub words: Offsets,
     /// Parameters, locals and members.
     pub locals: Vec<(String, usize)>,
+    /// Whether a condition stands before it.
+    pub conditional: bool,
+    /// Declarations that come with it: alternatives under conditions.
+    pub mates: Vec<usize>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct File {
     /// None for a user's shader.
     pub module: Option<String>,
+    /// True of a user's file, whose names follow no rule of dpsm's.
+    pub on_disk: bool,
     pub source: Arc<Source>,
     /// The comments that introduce the file, not its first declaration.
     pub header: Option<Range<usize>>,
@@ -57,23 +71,30 @@ pub(crate) struct File {
     pub names: BTreeMap<String, usize>,
     /// Names of all parameters, locals and members.
     pub locals: BTreeSet<String>,
+    /// What another tool must finish.
+    pub marks: Vec<Mark>,
 }
 
 const DECLARATIONS: [&str; 7] =
     ["fn", "struct", "const", "override", "alias", "var", "const_assert"];
 const DIRECTIVES: [&str; 3] = ["enable", "requires", "diagnostic"];
-/// Reads a module (with its name) or a user's shader (without).
+
+/// Reads a module (with its name) or a user's shader (without), which may hold what only another
+/// tool understands.
 pub(crate) fn parse(module: Option<&str>, path: &str, text: &str) -> Result<File, LinkError> {
-    let source = Arc::new(Source::new(path, text));
-    let all = tokenize(&source)?;
-    let (comments, tokens): (Vec<_>, Vec<_>) =
-        all.into_iter().partition(|token| token.kind == Kind::Comment);
+    parse_source(module, Arc::new(Source::new(path, text)))
+}
+
+pub(crate) fn parse_source(module: Option<&str>, source: Arc<Source>) -> Result<File, LinkError> {
+    let tokens = Tokens::read(Arc::clone(&source))?;
+    let marks = super::foreign::marks(&tokens, module.is_some())?;
     let mut parser = Parser {
-        pairs: Vec::new(),
-        comments: comments.into_iter().map(|token| token.span).collect(),
-        tokens,
+        before: None,
+        finished_by_another: module.is_none()
+            && marks.iter().any(|mark| mark.tool.is_preprocessor()),
         file: File {
             module: module.map(str::to_owned),
+            on_disk: false,
             source,
             header: None,
             summary: String::new(),
@@ -83,122 +104,138 @@ pub(crate) fn parse(module: Option<&str>, path: &str, text: &str) -> Result<File
             items: Vec::new(),
             names: BTreeMap::new(),
             locals: BTreeSet::new(),
+            marks,
         },
+        tokens,
     };
-    parser.pair()?;
-    parser.run()?;
+    match parser.tokens.pair() {
+        // other tools choose between brackets
+        Err(_) if parser.finished_by_another => parser.loose()?,
+        paired => {
+            paired?;
+            parser.run()?;
+        }
+    }
     parser.header();
     Ok(parser.file)
 }
 
+/// What a condition may go on from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Before {
+    Import,
+    Directive,
+    Item(usize),
+}
+
 struct Parser {
-    tokens: Vec<Token>,
-    comments: Vec<Range<usize>>,
-    /// For each opening bracket its closing one.
-    pairs: Vec<usize>,
+    tokens: Tokens,
+    /// True of a user's shader that a tool acts on before a compiler.
+    finished_by_another: bool,
+    before: Option<Before>,
     file: File,
 }
 
 impl Parser {
-    /// A token's text; empty past the end.
-    fn text(&self, at: usize) -> &str {
-        let token = self.tokens.get(at);
-        token.map_or("", |token| &self.file.source.text[token.span.clone()])
-    }
-
-    fn is_word(&self, at: usize) -> bool {
-        self.tokens.get(at).is_some_and(|token| token.kind == Kind::Word)
-    }
-
-    /// Offset of a token; of the last one past the end.
-    fn offset(&self, at: usize) -> usize {
-        let token = self.tokens.get(at).or(self.tokens.last());
-        token.map_or(0, |token| token.span.start)
-    }
-
-    fn malformed(&self, at: usize, what: String) -> LinkError {
-        LinkError::Malformed { place: self.file.source.place(self.offset(at)), what }
-    }
-
-    fn pair(&mut self) -> Result<(), LinkError> {
-        self.pairs = vec![0; self.tokens.len()];
-        let mut open = Vec::new();
-        for at in 0..self.tokens.len() {
-            let expected = match self.text(at) {
-                "(" | "[" | "{" => {
-                    open.push(at);
-                    continue;
-                }
-                ")" => "(",
-                "]" => "[",
-                "}" => "{",
-                _ => continue,
-            };
-            match open.pop() {
-                Some(start) if self.text(start) == expected => self.pairs[start] = at,
-                _ => return Err(self.malformed(at, format!("unbalanced `{}`", self.text(at)))),
-            }
-        }
-        match open.pop() {
-            Some(at) => Err(self.malformed(at, format!("`{}` is not closed", self.text(at)))),
-            None => Ok(()),
-        }
-    }
-
     fn run(&mut self) -> Result<(), LinkError> {
         let mut at = 0;
-        while at < self.tokens.len() {
-            let text = self.text(at);
-            let import = text == "import";
-            at = if text == ";" {
-                at + 1
-            } else if import || DIRECTIVES.contains(&text) {
-                if !self.file.items.is_empty() {
-                    let what = format!("`{text}` must come before all declarations");
-                    return Err(self.malformed(at, what));
-                }
-                let end = self.statement_end(at + 1)?;
-                match import {
-                    true => self.import(at, end)?,
-                    false => self.directive(at, end),
-                }
-                end + 1
-            } else {
-                self.item(at)?
-            };
+        while at < self.tokens.all.len() {
+            at = if self.tokens.text(at) == ";" { at + 1 } else { self.node(at)? };
         }
         Ok(())
+    }
+
+    /// Reads what is at a token and returns the token after it.
+    fn node(&mut self, first: usize) -> Result<usize, LinkError> {
+        let attributes = self.tokens.attributes(first);
+        let head = attributes.head;
+        let condition = attributes.conditions.first().map(|one| one.start);
+        let text = self.tokens.text(head);
+        let import = text == "import";
+        if !import && !DIRECTIVES.contains(&text) {
+            let count = self.file.items.len();
+            let end = self.item_or_text(first)?;
+            if self.file.items.len() > count {
+                self.goes_on(condition, Before::Item(count))?;
+            }
+            return Ok(end);
+        }
+        if self.file.items.iter().any(|item| item.kind != "text") {
+            let what = format!("`{text}` must come before all declarations");
+            return Err(self.tokens.malformed(head, what));
+        }
+        let end = self.statement_end(head + 1)?;
+        match import {
+            true => self.import(first, head, end)?,
+            false => self.directive(first, end),
+        }
+        let what = if import { Before::Import } else { Before::Directive };
+        self.goes_on(condition, what)?;
+        Ok(end + 1)
+    }
+
+    /// Keeps what `@elif` or `@else` stands before with what it goes on from.
+    fn goes_on(&mut self, condition: Option<usize>, what: Before) -> Result<(), LinkError> {
+        let before = self.before.replace(what);
+        let Some(at) = condition.filter(|at| self.tokens.text(at + 1) != "if") else {
+            return Ok(());
+        };
+        match (before, what) {
+            (Some(Before::Item(one)), Before::Item(other)) => {
+                self.mates(one, other);
+                Ok(())
+            }
+            (Some(Before::Import), Before::Import)
+            | (Some(Before::Directive), Before::Directive) => Ok(()),
+            _ => {
+                // imports go and directives move to the top: what follows would lose its `@if`
+                let what = format!(
+                    "`@{}` goes on from an import or a directive; give the features, so that it is \
+                     decided here",
+                    self.tokens.text(at + 1)
+                );
+                Err(wrong_condition(&self.tokens, at, what))
+            }
+        }
+    }
+
+    fn mates(&mut self, one: usize, other: usize) {
+        self.file.items[one].mates.push(other);
+        self.file.items[other].mates.push(one);
     }
 
     /// The `;` that ends the statement going on at a token.
     fn statement_end(&self, from: usize) -> Result<usize, LinkError> {
         let mut at = from;
         loop {
-            let text = self.text(at);
+            let text = self.tokens.text(at);
             let starts_next = text == "@" || text == "import" || DECLARATIONS.contains(&text);
             match text {
                 ";" => return Ok(at),
-                "(" | "[" => at = self.pairs[at],
+                "(" | "[" => at = self.tokens.pairs[at],
                 // Only an import has braces.
-                "{" if self.text(from - 1) == "import" => at = self.pairs[at],
-                "" | "{" => return Err(self.malformed(at.max(1) - 1, "missing `;`".to_owned())),
-                _ if starts_next => {
-                    return Err(self.malformed(at.max(1) - 1, "missing `;`".to_owned()));
-                }
+                "{" if self.tokens.text(from - 1) == "import" => at = self.tokens.pairs[at],
+                "" | "{" => return Err(self.missing_end(at)),
+                _ if starts_next => return Err(self.missing_end(at)),
                 _ => {}
             }
             at += 1;
         }
     }
 
-    fn span(&self, from: usize, to: usize) -> Range<usize> {
-        self.tokens[from].span.start..self.tokens[to].span.end
+    fn missing_end(&self, at: usize) -> LinkError {
+        self.tokens.malformed(at.max(1) - 1, "missing `;`".to_owned())
     }
 
-    fn directive(&mut self, at: usize, end: usize) {
-        let words: Vec<_> = (at..=end).map(|at| self.text(at)).collect();
+    fn directive(&mut self, first: usize, end: usize) {
+        let words: Vec<_> = (first..=end).map(|at| self.tokens.text(at)).collect();
         let words = words.join(" ");
-        let span = self.span(at, end);
+        let span = self.tokens.span(first, end);
         self.file.directives.push((words, span));
     }
+}
+
+/// Marks what is no declaration of WGSL.
+fn unknown(tokens: &Tokens, at: usize) -> Mark {
+    Mark { tool: Tool::Unknown, at: tokens.offset(at), text: item::clip(tokens.text(at)) }
 }

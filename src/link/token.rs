@@ -1,61 +1,21 @@
-//! Source text and its tokens.
+//! Tokens of a text.
 
 use std::ops::Range;
 
-use super::error::{LinkError, Place};
-
-/// A text with its path and the offsets at which its lines start.
-#[derive(Debug)]
-pub(crate) struct Source {
-    pub path: String,
-    pub text: String,
-    starts: Vec<usize>,
-}
-
-impl Source {
-    /// Drops a byte order mark and turns `\r\n` into `\n`, so that a checkout's line endings
-    /// change neither the linked text nor any column.
-    pub fn new(path: &str, text: &str) -> Self {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let text = text.replace("\r\n", "\n");
-        let breaks = text.match_indices('\n').map(|(at, _)| at + 1);
-        let starts = std::iter::once(0).chain(breaks).collect();
-        Self { path: path.to_owned(), text, starts }
-    }
-
-    /// The 1-based line of a byte offset.
-    pub fn line_at(&self, offset: usize) -> usize {
-        self.starts.partition_point(|start| *start <= offset)
-    }
-
-    /// Offset at which the line of a byte offset starts.
-    pub fn line_start(&self, offset: usize) -> usize {
-        self.starts[self.line_at(offset) - 1]
-    }
-
-    /// A line's text, without its end.
-    pub fn line(&self, line: usize) -> Option<&str> {
-        let start = *self.starts.get(line.checked_sub(1)?)?;
-        self.text[start..].split('\n').next()
-    }
-
-    pub fn place(&self, offset: usize) -> Place {
-        Place { file: self.path.clone(), line: self.line_at(offset) }
-    }
-
-    /// The number of line breaks between two offsets.
-    pub fn breaks_between(&self, from: usize, to: usize) -> usize {
-        self.line_at(to) - self.line_at(from)
-    }
-}
+use super::error::LinkError;
+use super::placeholder::{line_or_tag, placeholder};
+pub(crate) use super::source::Source;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
+    /// An identifier or keyword, which may hold placeholders: `light_#{NAME}`.
     Word,
     Number,
     /// One character of punctuation: `>>` is two tokens, since it may close two templates.
     Mark,
     Comment,
+    /// A line or tag of another tool: `#ifdef NAME`.
+    Foreign,
 }
 
 #[derive(Clone, Debug)]
@@ -106,17 +66,44 @@ pub(crate) fn tokenize(source: &Source) -> Result<Vec<Token>, LinkError> {
                 }
             },
             ('0'..='9', _) | ('.', '0'..='9') => (Kind::Number, number(rest)),
-            (c, _) if is_word_char(c) => {
-                let end = rest.find(|c| !is_word_char(c));
-                (Kind::Word, end.unwrap_or(rest.len()))
+            _ => {
+                let foreign = match c {
+                    '#' | '{' | '<' => line_or_tag(rest, starts_line(text, at)),
+                    _ => None,
+                };
+                match (foreign, word(rest)) {
+                    (Some(length), _) => (Kind::Foreign, length),
+                    (None, 0) => (Kind::Mark, c.len_utf8()),
+                    (None, length) => (Kind::Word, length),
+                }
             }
-            (c, _) => (Kind::Mark, c.len_utf8()),
         };
         let span = at..at + length;
         at = span.end;
         tokens.push(Token { kind, span });
     }
     Ok(tokens)
+}
+
+fn starts_line(text: &str, at: usize) -> bool {
+    let before = text[..at].trim_end_matches([' ', '\t']);
+    before.is_empty() || before.ends_with('\n')
+}
+
+/// Length of the word at the start of a text, with the placeholders in it; 0 if there is none.
+fn word(text: &str) -> usize {
+    let mut end = 0;
+    while let Some(c) = text[end..].chars().next() {
+        end += match c {
+            c if is_word_char(c) => c.len_utf8(),
+            '#' | '$' | '{' | '<' => match placeholder(&text[end..]) {
+                Some(length) => length,
+                None => break,
+            },
+            _ => break,
+        };
+    }
+    end
 }
 
 /// Length of the block comment at the start of a text; they nest.
