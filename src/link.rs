@@ -36,7 +36,7 @@ use token::Source;
 /// A set of modules to link from.
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
-    files: Vec<File>,
+    files: Vec<Arc<File>>,
     /// A user's modules: path and text.
     named: Vec<(PathBuf, String)>,
     features: Features,
@@ -125,7 +125,7 @@ pub fn link_file(path: impl AsRef<Path>) -> Result<Linked, LinkError> {
 /// [`LinkError::UnknownFunction`] with the nearest name.
 pub fn link_function(name: &str) -> Result<Linked, LinkError> {
     let catalogue = Catalogue::dpsm()?;
-    let holds = |file: &&File| {
+    let holds = |file: &&Arc<File>| {
         let item = file.names.get(name).map(|item| &file.items[*item]);
         item.is_some_and(|item| item.kind == "fn")
     };
@@ -136,8 +136,8 @@ pub fn link_function(name: &str) -> Result<Linked, LinkError> {
 }
 
 /// Says what a name is that is no function's, or which functions there are.
-fn no_function(files: &[File], name: &str) -> LinkError {
-    let functions = |file: &File| {
+fn no_function(files: &[Arc<File>], name: &str) -> LinkError {
+    let functions = |file: &Arc<File>| {
         let items = file.items.iter().filter(|item| item.kind == "fn");
         items.filter_map(|item| item.name.clone()).collect::<Vec<_>>()
     };
@@ -172,7 +172,7 @@ fn no_function(files: &[File], name: &str) -> LinkError {
     LinkError::UnknownFunction {
         name: name.to_owned(),
         near: names::nearest(name_only, all.iter().map(String::as_str)),
-        present: names::by_nearness(name_only, all.iter().map(String::as_str)),
+        present: names::by_nearness(name_only, all.iter().map(String::as_str)).into(),
     }
 }
 
@@ -189,17 +189,16 @@ fn parse_decided(
     Ok((parse::parse_source(module, source)?, asked))
 }
 
-impl File {
-    /// The file with its conditions decided, and the features that these ask for.
-    fn decided(&self, features: &Features) -> Result<(File, BTreeSet<String>), LinkError> {
-        let (source, asked) = condition::translate(self.source.whole(), features)?;
-        if Arc::ptr_eq(&source, &self.source) {
-            return Ok((self.clone(), asked));
-        }
-        let mut file = parse::parse_source(self.module.as_deref(), source)?;
-        file.on_disk = self.on_disk;
-        Ok((file, asked))
+/// A file with its conditions decided, and the features that these ask for.
+fn decided(
+    file: &Arc<File>,
+    features: &Features,
+) -> Result<(Arc<File>, BTreeSet<String>), LinkError> {
+    let (source, asked) = condition::translate(&file.source, features)?;
+    if Arc::ptr_eq(&source, &file.source) {
+        return Ok((Arc::clone(file), asked));
     }
+    Ok((Arc::new(parse::parse_source(file.module.as_deref(), source)?), asked))
 }
 
 impl Catalogue {
@@ -253,7 +252,7 @@ impl Catalogue {
             let what = format!("`{name}` cannot be the name of a module");
             return Err(LinkError::Malformed { place, what });
         }
-        let same = |file: &&File| file.module.as_deref() == Some(name);
+        let same = |file: &&Arc<File>| file.module.as_deref() == Some(name);
         if let Some(other) = self.files.iter().find(same) {
             return Err(LinkError::DuplicateModule {
                 place,
@@ -263,7 +262,7 @@ impl Catalogue {
         }
         let file = parse::parse(Some(name), path, text)?;
         names::check(&file, rules)?;
-        self.files.push(file);
+        self.files.push(Arc::new(file));
         Ok(self)
     }
 
@@ -409,7 +408,7 @@ impl Catalogue {
     /// # Ok::<(), dpsm::LinkError>(())
     /// ```
     pub fn describe(&self) -> Vec<ModuleInfo> {
-        self.files.iter().map(describe).collect()
+        self.files.iter().map(|file| describe(file)).collect()
     }
 }
 

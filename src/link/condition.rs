@@ -72,10 +72,13 @@ pub(crate) fn translate(
     source: &Arc<Source>,
     features: &Features,
 ) -> Result<(Arc<Source>, BTreeSet<String>), LinkError> {
+    let undecided = || (Arc::clone(source), BTreeSet::new());
+    if features.is_empty() || !source.text.contains('@') {
+        return Ok(undecided());
+    }
     let mut tokens = Tokens::read(Arc::clone(source))?;
-    let conditions = (0..tokens.all.len()).any(|at| tokens.is_condition(at));
-    if features.is_empty() || !conditions {
-        return Ok((Arc::clone(source), BTreeSet::new()));
+    if !(0..tokens.all.len()).any(|at| tokens.is_condition(at)) {
+        return Ok(undecided());
     }
     tokens.pair()?;
     let (cuts, names) = walk::walk(&tokens, features)?;

@@ -28,7 +28,7 @@ impl fmt::Display for Place {
 pub enum LinkError {
     /// No module has this name; `present` are those that there are, the nearest first.
     #[error("{place}: unknown module `{name}`{}{}", did_you_mean(near), there_is(near, present))]
-    UnknownModule { place: Place, name: String, near: Option<String>, present: Vec<String> },
+    UnknownModule { place: Place, name: String, near: Option<String>, present: Box<[String]> },
 
     /// The module does not declare this name; `present` are those that it does.
     #[error(
@@ -41,12 +41,12 @@ pub enum LinkError {
         module: String,
         name: String,
         near: Option<String>,
-        present: Vec<String>,
+        present: Box<[String]>,
     },
 
     /// No module declares a function of this name.
     #[error("unknown function `{name}`{}{}", did_you_mean(near), there_is(near, present))]
-    UnknownFunction { name: String, near: Option<String>, present: Vec<String> },
+    UnknownFunction { name: String, near: Option<String>, present: Box<[String]> },
 
     /// A name that stands for something else than what was asked for.
     #[error("`{name}` is {what}; {instead}")]

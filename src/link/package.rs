@@ -3,6 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::condition::Features;
 use super::error::{LinkError, Place};
@@ -11,7 +12,7 @@ use super::read::{listed, read, shaders};
 
 /// Files that import each other: first those of the catalogue, then those of the user.
 pub(super) struct Package {
-    pub files: Vec<File>,
+    pub files: Vec<Arc<File>>,
     /// For a file's import by index the file that it names, where that is one of the user's.
     pub links: BTreeMap<(usize, usize), usize>,
     /// Features that conditions ask for.
@@ -38,7 +39,7 @@ struct Home {
 
 impl Package {
     /// The catalogue's modules alone.
-    pub fn new(files: &[File], features: &Features) -> Result<Self, LinkError> {
+    pub fn new(files: &[Arc<File>], features: &Features) -> Result<Self, LinkError> {
         let mut package = Self {
             files: Vec::new(),
             links: BTreeMap::new(),
@@ -50,7 +51,7 @@ impl Package {
             named: BTreeMap::new(),
         };
         for file in files {
-            let (decided, asked) = file.decided(features)?;
+            let (decided, asked) = super::decided(file, features)?;
             package.files.push(decided);
             package.asked.extend(asked);
         }
@@ -67,7 +68,7 @@ impl Package {
     pub fn text(&mut self, file: File, asked: BTreeSet<String>) -> usize {
         self.asked.extend(asked);
         let name = PathBuf::from(&file.source.path);
-        self.files.push(file);
+        self.files.push(Arc::new(file));
         self.homes.push(Home { key: name, folder: None, depth: 0 });
         self.files.len() - 1
     }
@@ -106,7 +107,7 @@ impl Package {
         let (mut file, asked) = super::parse_decided(module, &name, text, &self.features)?;
         file.on_disk = true;
         self.asked.extend(asked);
-        self.files.push(file);
+        self.files.push(Arc::new(file));
         self.homes.push(Home { key: key(path), folder: Some(folder(path)), depth });
         Ok(self.files.len() - 1)
     }
@@ -133,7 +134,7 @@ impl Package {
     /// The user's file that an import names; none where it is one of the catalogue's modules.
     fn target(&mut self, file: usize, import: &Import) -> Result<Option<usize>, LinkError> {
         let place = self.files[file].source.place(import.at);
-        let known = |known: &&File| known.module.as_deref() == Some(import.module.as_str());
+        let known = |known: &&Arc<File>| known.module.as_deref() == Some(import.module.as_str());
         let catalogue = self.files[..self.own].iter().find(known);
         if import.root == Root::Dpsm
             || catalogue.is_some_and(|known| known.names.contains_key(&import.item))

@@ -19,8 +19,8 @@ pub(crate) fn placeholder(text: &str) -> Option<usize> {
     };
     match line.as_bytes() {
         [b'#' | b'$', b'{', ..] => within("}", &['{', ';']),
-        // a block in a block needs a statement, and so a `;`
-        [b'{', b'{', ..] => within("}}", &['{', '}', ';']),
+        // a block in a block needs a statement, and so a `;`, or a comment
+        [b'{', b'{', ..] => within("}}", &['{', '}', ';', '/']),
         [b'<', b'%', b'=' | b'-', ..] => within("%>", &[]),
         [b'$', b'$', ..] => Some(2),
         [b'#' | b'$', ..] => Some(word(1)).filter(|end| *end > 1),

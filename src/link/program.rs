@@ -27,7 +27,7 @@ pub(crate) struct Kept {
 
 impl<'a> Program<'a> {
     pub fn new(package: &'a Package) -> Self {
-        let files: Vec<_> = package.files.iter().collect();
+        let files: Vec<_> = package.files.iter().map(|file| &**file).collect();
         let names = files.iter().enumerate().filter(|(_, file)| !file.on_disk);
         let modules = names.filter_map(|(index, file)| Some((file.module.as_deref()?, index)));
         Self { modules: modules.collect(), files, package }
@@ -65,7 +65,8 @@ impl<'a> Program<'a> {
             Some(_) => self.items_by_nearness(name),
             None => by_nearness(name, modules()),
         };
-        Err(LinkError::UnknownModule { place: place(), name: name.to_owned(), near, present })
+        let (name, present) = (name.to_owned(), present.into());
+        Err(LinkError::UnknownModule { place: place(), name, near, present })
     }
 
     /// Every item of the catalogue with its module.
@@ -116,7 +117,7 @@ impl<'a> Program<'a> {
             module: self.name(file),
             name: name.to_owned(),
             near: elsewhere.or_else(|| nearest(name, names.keys().map(String::as_str))),
-            present,
+            present: present.into(),
         })
     }
 

@@ -72,9 +72,4 @@ impl Source {
     pub fn breaks_between(&self, from: usize, to: usize) -> usize {
         self.row_at(to) - self.row_at(from)
     }
-
-    /// The file as it is, before conditions were evaluated.
-    pub fn whole(self: &Arc<Self>) -> &Arc<Self> {
-        self.file.as_ref().map_or(self, |(file, _)| file)
-    }
 }

@@ -235,6 +235,7 @@ fn valid_texts_have_no_notes() {
     for text in [
         "fn f() {{ let x = 1; }}",
         "fn f() { if true {{}} }",
+        "fn f() {{ /* nothing */ }}",
         "fn f(a: i32, b: i32) -> bool { return a<b; }",
         "const a = 7 % 3; // 100% {% sure %} #{x} $y\n",
         "/* #ifdef A\n#import b */ const x = 1;",
