@@ -78,10 +78,10 @@ pub enum LinkError {
     )]
     ForeignImport { place: Place, what: String, instead: String },
 
-    /// A line of another tool in a module, of which only some declarations are taken.
+    /// A line of another tool between a module's declarations, of which only some are taken.
     #[error(
-        "{place}: `{what}` is a line of {tool}, which only the shader itself may hold, not a module \
-         that it imports; run that tool on the module first, or write `@if(NAME)`"
+        "{place}: `{what}` is a line of {tool} between declarations of a module, of which only those \
+         are taken that are needed; run that tool on the module first, or write `@if(NAME)`"
     )]
     ForeignLine { place: Place, what: String, tool: &'static str },
 

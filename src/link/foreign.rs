@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::error::{LinkError, Place};
-use super::parse::Tokens;
+use super::parse::{File, Tokens};
 use super::placeholder::placeholder;
 use super::source::Source;
 use super::token::is_word_char;
@@ -36,6 +36,12 @@ pub(crate) enum Tool {
 }
 
 impl Tool {
+    /// True of a line or tag, which stands where it likes.
+    fn is_line(self) -> bool {
+        use Tool::{Glsl, Include, Lines, NagaOil, Preprocessor};
+        matches!(self, NagaOil | Include | Preprocessor | Lines | Glsl)
+    }
+
     /// True where the text is no WGSL before that tool has run.
     pub fn is_preprocessor(self) -> bool {
         !matches!(self, Tool::Wesl | Tool::Unknown | Tool::Comment)
@@ -70,7 +76,7 @@ impl fmt::Display for Note {
 }
 
 /// Everything that another tool must finish.
-pub(crate) fn marks(tokens: &Tokens, module: bool) -> Result<Vec<Mark>, LinkError> {
+pub(crate) fn marks(tokens: &Tokens) -> Result<Vec<Mark>, LinkError> {
     let mut marks = Vec::new();
     for span in &tokens.foreign {
         let line = &tokens.source.text[span.clone()];
@@ -78,10 +84,6 @@ pub(crate) fn marks(tokens: &Tokens, module: bool) -> Result<Vec<Mark>, LinkErro
         let place = || tokens.source.place(span.start);
         if let Some(instead) = import_of_dpsm(line) {
             return Err(LinkError::ForeignImport { place: place(), what: mark.text, instead });
-        }
-        if module {
-            let (what, tool) = (mark.text, mark.tool.name());
-            return Err(LinkError::ForeignLine { place: place(), what, tool });
         }
         marks.push(mark);
     }
@@ -108,6 +110,23 @@ pub(crate) fn marks(tokens: &Tokens, module: bool) -> Result<Vec<Mark>, LinkErro
         }
     }
     Ok(marks)
+}
+
+/// Refuses another tool's lines between the declarations of a module: of those some are taken, and
+/// the lines would be lost.
+pub(crate) fn check_module(file: &File) -> Result<(), LinkError> {
+    let mut items = file.items.iter().peekable();
+    for mark in file.marks.iter().filter(|mark| mark.tool.is_line()) {
+        while items.next_if(|item| item.span.end <= mark.at).is_some() {}
+        if items.peek().is_none_or(|item| item.span.start > mark.at) {
+            return Err(LinkError::ForeignLine {
+                place: file.source.place(mark.at),
+                what: mark.text.clone(),
+                tool: mark.tool.name(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// `@if(NAME)` as it stands, on one line.

@@ -87,7 +87,7 @@ pub(crate) fn parse(module: Option<&str>, path: &str, text: &str) -> Result<File
 
 pub(crate) fn parse_source(module: Option<&str>, source: Arc<Source>) -> Result<File, LinkError> {
     let tokens = Tokens::read(Arc::clone(&source))?;
-    let marks = super::foreign::marks(&tokens, module.is_some())?;
+    let marks = super::foreign::marks(&tokens)?;
     let mut parser = Parser {
         before: None,
         finished_by_another: module.is_none()
@@ -117,6 +117,9 @@ pub(crate) fn parse_source(module: Option<&str>, source: Arc<Source>) -> Result<
         }
     }
     parser.header();
+    if module.is_some() {
+        super::foreign::check_module(&parser.file)?;
+    }
     Ok(parser.file)
 }
 

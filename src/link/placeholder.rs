@@ -28,6 +28,11 @@ pub(crate) fn placeholder(text: &str) -> Option<usize> {
     }
 }
 
+/// A word up to its first placeholder, which may well stand for nothing.
+pub(crate) fn plain(word: &str) -> &str {
+    word.split(['#', '$', '{', '<']).next().unwrap_or(word)
+}
+
 /// Length of another tool's line or tag at the start of a text: `#ifdef NAME` to the end of its line,
 /// `{% if name %}`, `<% if %>`. A `#` counts at the start of a line only.
 pub(crate) fn line_or_tag(text: &str, starts_line: bool) -> Option<usize> {

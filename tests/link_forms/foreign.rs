@@ -78,6 +78,7 @@ fn placeholders_may_stand_for_anything_of_a_declaration() {
         "${declarations}\n\nconst x = 1;",
         "{{ declarations }}\nconst x = 1;",
         "fn f() {\n    #{BODY}\n}",
+        "import dpsm::light::{DpsmLight};\nfn f(l: DpsmLight{{ more }}) {}",
         "struct S {\n    #{MEMBERS}\n    x: f32,\n}",
         "{% if soft %}\nfn f() {}\n{% else %}\nfn f() { g(); }\n{% endif %}",
         "<% if (soft) { %>\nfn f() {}\n<% } %>",
@@ -86,6 +87,7 @@ fn placeholders_may_stand_for_anything_of_a_declaration() {
     ] {
         let linked = passed_on(text);
         assert!(linked.notes().iter().any(|note| note.unfinished), "{text}");
+        assert_eq!(text.contains("DpsmLight"), linked.text.contains("struct DpsmLight"));
     }
 }
 
@@ -219,12 +221,16 @@ fn words_that_naga_does_not_know_are_passed_on() {
 }
 
 #[test]
-fn modules_take_placeholders_but_no_lines_of_other_tools() {
+fn modules_take_marks_of_other_tools_in_declarations_but_no_lines_between_them() {
     let all = dpsm::Catalogue::new().with("m", "m.wesl", "const N = #{N};\nconst M = $M;").unwrap();
     let linked = all.link(&["m::N"]).unwrap();
     assert!(linked.text.contains("const N = #{N};"));
     assert_eq!(linked.notes().len(), 1);
     assert!(linked.notes()[0].to_string().starts_with("m.wesl:1: `#{N}`"));
+    let inside = "fn f() {\n#ifdef N\n    g();\n#endif\n}\nfn g() {}";
+    let all = dpsm::Catalogue::new().with("m", "m.wesl", inside).unwrap();
+    let linked = all.link_source("my.wesl", "import super::m::{f};").unwrap();
+    assert!(linked.text.contains("{\n#ifdef N\n    g();\n#endif\n}") && linked.notes().len() == 1);
     let error =
         dpsm::Catalogue::new().with("m", "m.wesl", "\n#ifdef N\nconst N = 1;\n#endif").unwrap_err();
     assert!(error.to_string().starts_with("m.wesl:2: `#ifdef N` is a line of"), "{error}");

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::super::error::LinkError;
+use super::super::placeholder::plain;
 use super::super::token::is_word;
 use super::import::ROOTS;
 use super::tokens::CONDITIONS;
@@ -246,7 +247,7 @@ impl Parser {
                     if members.contains(&here) && self.tokens.text(at) == ":" {
                         locals.push((text.to_owned(), self.tokens.offset(here)));
                     } else if here != name {
-                        words.entry(text.to_owned()).or_insert(self.tokens.offset(here));
+                        words.entry(plain(text).to_owned()).or_insert(self.tokens.offset(here));
                     }
                 }
                 _ => {}

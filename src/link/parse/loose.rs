@@ -3,6 +3,7 @@
 
 use super::super::error::LinkError;
 use super::super::foreign::{Mark, Tool};
+use super::super::placeholder::plain;
 use super::{DIRECTIVES, Item, Offsets, Parser};
 
 impl Parser {
@@ -24,7 +25,7 @@ impl Parser {
                 continue;
             }
             if self.tokens.is_word(at) && (at == 0 || self.tokens.text(at - 1) != ".") {
-                words.entry(text.to_owned()).or_insert(self.tokens.offset(at));
+                words.entry(plain(text).to_owned()).or_insert(self.tokens.offset(at));
             }
             at += 1;
         }
