@@ -10,6 +10,14 @@ fn dpsm_depth(l: f32, near: f32, far: f32) -> f32 {
     return (l - near) / (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
 /// The depth of a receiver, clamped to [0, 1]: one nearer than near compares as lit, and beyond
 /// far only casters between the spheres shadow it.
 ///
@@ -49,8 +57,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -222,20 +230,24 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
 
 /// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
 /// share of the distance: 64 eps, 32 for each (docs/bias.md).
 const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
 
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
+/// How far rounding may move a world position that vertices interpolate, for each unit of its largest
+/// coordinate: 16 eps (docs/bias.md).
+const DPSM_POSITION_ROUNDING: f32 = 0x1p-20;
+
+/// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
+const DPSM_BIAS_DISTANCE: f32 = 0x1.8p-19;
 
 /// The same for each unit of near, 10 eps.
 const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
-
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
@@ -243,14 +255,25 @@ const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 /// The square of the shortest normal that is one: 2^-100.
 const DPSM_BIAS_NORMAL: f32 = 0x1p-100;
 
+/// How far a surface point that vertices interpolate may lie off its triangle, in world units, for
+/// its world position: far from the world's origin a float's step is wide, however near the light is.
+///
+/// Domain: any. Exact, up to underflow.
+fn dpsm_position_error(world: vec3<f32>) -> f32 {
+    return DPSM_POSITION_ROUNDING * max(max(abs(world.x), abs(world.y)), abs(world.z));
+}
+
 /// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
 /// or one shorter than 2^-50, gives the plane that faces the light.
 ///
-/// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
-/// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
-/// p = 0, normal no longer than 2^62. Bound: normal 11 eps absolute, each component; height
-/// 14 eps |p| absolute; distance 6 eps relative.
-fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
+/// error: how far p may lie off its surface in world units: dpsm_position_error of the world
+/// position, or 0 where that is within rounding of p itself. For dpsm_visibility_texel_centre and
+/// dpsm_visibility_footprint the normal must be the triangle's own: an interpolated one is of another
+/// plane. A plane so edge-on that the error may turn it away from the light may be dark.
+/// Domain: largest |component| of p in [2^-51, 2^62] or p = 0, normal no longer than 2^62,
+/// 0 <= error <= 2^62. Bound: normal 11 eps absolute, each component; height 14 eps |p| absolute;
+/// distance 6 eps relative; rounding 10.
+fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>, error: f32) -> DpsmReceiver {
     let distance = length(p);
     let square = dot(normal, normal);
     let known = square >= DPSM_BIAS_NORMAL;
@@ -258,7 +281,12 @@ fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
     let size = select(max(distance, DPSM_SMALLEST), sqrt(square), known);
     let unit = along * (1.0 / size);
     let height = select(distance, dot(unit, p), known);
-    return DpsmReceiver(vec4<f32>(select(unit, -unit, height < 0.0), abs(height)), distance);
+    let moved = min(error / max(distance, DPSM_SMALLEST), 1.0);
+    return DpsmReceiver(
+        vec4<f32>(select(unit, -unit, height < 0.0), abs(height)),
+        distance,
+        DPSM_RECEIVER_ROUNDING + moved,
+    );
 }
 
 /// The cosine of a receiver's incidence.
@@ -272,8 +300,8 @@ fn dpsm_receiver_cosine(receiver: DpsmReceiver) -> f32 {
 /// that rounding of either plane allows. Where the direction does not meet the plane it is
 /// DPSM_SMALLEST, in front of all: a tap there never darkens.
 ///
-/// Domain: r <= 2^62. Between 1 - 96 eps / cos and 1 times the plane's distance, cos that of the
-/// incidence there, and at most 2^17 times its height.
+/// Domain: r <= 2^62. Between 1 - (rounding + 32 eps) / cos and 1 times the plane's distance, cos that
+/// of the incidence there, and at most 2^17 times its height.
 fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32) -> f32 {
     let d = dpsm_flip(dpsm_edge_terms(uv).xyz, hemisphere);
     let whole = 1.0 + dot(uv, uv);
@@ -281,19 +309,19 @@ fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32
     if facing <= 0.0 {
         return DPSM_SMALLEST;
     }
-    let leaned = facing + DPSM_RECEIVER_ROUNDING * whole;
+    let leaned = facing + receiver.rounding * whole;
     return max(receiver.plane.w * (whole / leaned), DPSM_SMALLEST);
 }
 
 /// What is left of the bias where the same direction is compared, in units of depth: the format's
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
-/// allowed.
+/// allowed. All but the quantum is in proportion to the distance, whatever far is.
 ///
 /// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
-    return quantum + DPSM_BIAS_DEPTH + spread / (light.far - light.near);
+    return quantum + spread / (light.far - light.near);
 }
 
 /// The square of the chord on the unit sphere from a disk point to the farthest corner of the
@@ -314,15 +342,22 @@ fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
 /// depth, for the cosine of its incidence: l (1 - cos a / cos(a - psi)) / (far - near), and
 /// l (1 - cos a) where a <= psi.
 ///
-/// chord_square: dpsm_bias_window. Domain: 0 <= cosine <= 1. Bound: 12 eps l / (far - near)
-/// absolute, beyond what the planes' rounding, which is allowed for, adds.
-fn dpsm_bias_plane(cosine: f32, distance: f32, chord_square: f32, light: DpsmLight) -> f32 {
+/// chord_square: dpsm_bias_window; rounding: the receiver's. Domain: 0 <= cosine <= 1,
+/// 2^-17 <= rounding <= 2. Bound: 12 eps l / (far - near) absolute, beyond what the planes' rounding,
+/// which is allowed for, adds.
+fn dpsm_bias_plane(
+    cosine: f32,
+    distance: f32,
+    chord_square: f32,
+    rounding: f32,
+    light: DpsmLight,
+) -> f32 {
     let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     let fall = 0.5 * chord_square;
     let turn = sqrt(chord_square * (1.0 - 0.25 * chord_square));
     // cos(a - psi) - cos a; the plane's nearest point, at a = 0, if it is within the window
     let steeper = max(sine * turn - cosine * fall, 0.0);
-    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + DPSM_RECEIVER_ROUNDING;
+    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + rounding;
     return distance * (drop / (cosine + drop)) / (light.far - light.near);
 }
 
@@ -337,7 +372,8 @@ fn dpsm_bias_footprint(
     light: DpsmLight,
 ) -> f32 {
     let chord_square = dpsm_bias_window(uv, texels, light);
-    return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
+    let cosine = dpsm_receiver_cosine(receiver);
+    return dpsm_bias_plane(cosine, receiver.distance, chord_square, receiver.rounding, light);
 }
 
 /// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
@@ -409,7 +445,8 @@ fn dpsm_visibility_texel_centre(
     tolerance: f32,
 ) -> f32 {
     let at = dpsm_lookup_texel_centre(p, receiver, light, quantum, tolerance);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
+    let reference = dpsm_depth_stored(at.depth, light.reversed);
+    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, reference);
     return select(0.0, lit, at.mapped);
 }
 
@@ -429,6 +466,7 @@ fn dpsm_visibility_footprint(
 ) -> f32 {
     let window = dpsm_bias_footprint(receiver, dpsm_project_own(p), texels, light);
     let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth);
+    let reference = dpsm_depth_stored(at.depth, light.reversed);
+    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, reference);
     return select(0.0, lit, at.mapped);
 }

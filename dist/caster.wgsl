@@ -10,6 +10,14 @@ fn dpsm_depth(l: f32, near: f32, far: f32) -> f32 {
     return (l - near) / (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
 /// True where a radial distance lies between the clipping spheres, both included.
 ///
 /// Domain: any l without NaN. Exact.
@@ -45,8 +53,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 // dpsm::hemisphere
@@ -138,12 +146,13 @@ fn dpsm_caster_border(guard: f32) -> f32 {
 ///
 /// p: flipped light-space position; bias: added to the depth, in units of depth.
 /// Domain: largest |component| of p in [2^-51, 2^63] or p = 0. Bound: position as dpsm_project
-/// plus 3.5 eps relative, depth eps ((11.5 |p| + 5.5 near) / (far - near) + |bias|) absolute,
+/// plus 3.5 eps relative, depth eps ((11.5 |p| + 5.5 near) / (far - near) + |bias|) absolute, and
+/// eps more for DPSM_REVERSED,
 /// value eps (8 |p| / far + 1) absolute.
 fn dpsm_caster_vertex(p: vec3<f32>, light: DpsmLight, bias: f32) -> DpsmCasterVertex {
     let l = length(p);
     let disk = dpsm_project(p) / (1.0 + light.guard);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     let height = p.z - l * dpsm_caster_border(light.guard);
     return DpsmCasterVertex(vec4<f32>(disk, depth, 1.0), 0.5 + 0.5 * height / light.far);
 }
@@ -163,6 +172,6 @@ fn dpsm_caster_keep(hemisphere_value: f32) -> bool {
 fn dpsm_caster_fragment(p: vec3<f32>, light: DpsmLight, bias: f32) -> DpsmCasterFragment {
     let l = length(p);
     let inside = p.z >= l * dpsm_caster_border(light.guard);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     return DpsmCasterFragment(depth, inside && dpsm_within(l, light.near, light.far));
 }

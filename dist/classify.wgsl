@@ -28,8 +28,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 // dpsm::hemisphere
@@ -318,6 +318,10 @@ const DPSM_CLASSIFY_FACING: f32 = 0x1p-60;
 /// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
 const DPSM_CLASSIFY_SPREAD: f32 = 0x1p40;
 
+/// The least height of a steep triangle's plane, as a share of the farthest vertex's distance: what
+/// rasterizers snap vertices by must not take fragments beyond the plane's horizon.
+const DPSM_CLASSIFY_EDGE_ON: f32 = 0x1p-10;
+
 /// True where every component is a number up to 2^62. By its bits, since NaN may be assumed away.
 ///
 /// Exact.
@@ -382,8 +386,10 @@ fn dpsm_classify(
         if error <= depth_tolerance {
             return DpsmClass(select(DPSM_FLAT, DPSM_STRADDLING, both), hemispheres);
         }
-        // clear of the clipping spheres, at which interpolated distances would be cut
-        if !both && height > light.near && farthest < light.far {
+        // clear of the clipping spheres, at which interpolated distances would be cut, and not so
+        // edge-on that its plane runs off beside it
+        let clear = height > max(light.near, DPSM_CLASSIFY_EDGE_ON * farthest);
+        if !both && clear && farthest < light.far {
             return DpsmClass(DPSM_STEEP, hemispheres);
         }
     }

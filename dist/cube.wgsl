@@ -28,8 +28,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 // dpsm::paraboloid
@@ -85,11 +85,10 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
-
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 64 eps, 32 for each (docs/bias.md).
-const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
 
 /// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
 /// map. Looked up at dpsm_disk_to_texture of it, that texel is the one that is read, whatever the
@@ -256,7 +255,7 @@ fn dpsm_cube_lookup_texel_centre(
     let direction = vec3<f32>(centre, 1.0);
     let l = length(direction);
     let facing = dot(receiver.plane.xyz, dpsm_cube_unview(direction, at.hemisphere));
-    let leaned = max(facing, 0.0) + DPSM_RECEIVER_ROUNDING * l;
+    let leaned = max(facing, 0.0) + receiver.rounding * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
     let there = min(receiver.plane.w / leaned, light.far / l);
     let z = select(receiver.distance / l, there, facing > 0.0);
@@ -276,26 +275,14 @@ fn dpsm_cube_lookup_footprint(
     light: DpsmLight,
     quantum: f32,
 ) -> DpsmLookup {
-    let normal = abs(dpsm_cube_view(receiver.plane.xyz, dpsm_cube_face(p)).xy);
+    var at = dpsm_cube_lookup(p, light);
+    let normal = abs(dpsm_cube_view(receiver.plane.xyz, at.hemisphere).xy);
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x + normal.y);
-    return dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum);
-}
-
-/// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
-/// rises by so much from where the point is, less the slack.
-///
-/// height: of the plane. Domain: as dpsm_cube_lookup_footprint, height and rise >= 0.
-fn dpsm_cube_lookup_rising(
-    p: vec3<f32>,
-    height: f32,
-    rise: f32,
-    light: DpsmLight,
-    quantum: f32,
-) -> DpsmLookup {
-    var at = dpsm_cube_lookup(p, light);
     let own = max(dpsm_cube_view(p, at.hemisphere).z, DPSM_SMALLEST);
-    let z = own * (height / (height + rise * own + DPSM_RECEIVER_ROUNDING * length(p)));
+    let height = receiver.plane.w;
+    let risen = height + rise * own + receiver.rounding * receiver.distance;
+    let z = own * (height / max(risen, DPSM_SMALLEST));
     at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
     return at;
 }

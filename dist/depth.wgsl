@@ -20,6 +20,21 @@ fn dpsm_distance(depth: f32, near: f32, far: f32) -> f32 {
     return near + depth * (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
+/// dpsm_depth_stored of four depths.
+///
+/// Domain and bound: as for dpsm_depth_stored.
+fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
+    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+}
+
 /// True where a radial distance lies between the clipping spheres, both included.
 ///
 /// Domain: any l without NaN. Exact.

@@ -19,6 +19,14 @@ const DPSM_HEMISPHERICAL: u32 = 1u;
 /// An omnidirectional light: two maps.
 const DPSM_OMNIDIRECTIONAL: u32 = 2u;
 
+/// The maps store depths as they are, cleared to 1, drawn with less and compared with less-equal.
+const DPSM_FORWARD: u32 = 0u;
+
+/// The maps store 1 less the depth, cleared to 0, drawn with greater and compared with greater-equal.
+/// Depths are radial and linear, so this gains no precision: it is for renderers whose samplers and
+/// depth states are so. Callers add 2^-24 to the format's quantum, the step of floats below 1.
+const DPSM_REVERSED: u32 = 1u;
+
 /// A point light with paraboloid maps.
 struct DpsmLight {
     /// World position.
@@ -45,8 +53,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.

@@ -9,6 +9,13 @@ fn dpsm_distance(depth: f32, near: f32, far: f32) -> f32 {
     return near + depth * (far - near);
 }
 
+/// dpsm_depth_stored of four depths.
+///
+/// Domain and bound: as for dpsm_depth_stored.
+fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
+    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+}
+
 // dpsm::light
 
 /// The maps are in layer first_layer: front in `rectangle`, back in the rectangle at its right.
@@ -40,8 +47,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -106,10 +113,10 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
-
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
 // dpsm::kernel
 
@@ -136,12 +143,12 @@ fn dpsm_kernel_next(direction: vec2<f32>) -> vec2<f32> {
 
 // dpsm::plane
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 128 eps (docs/plane.md).
-const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+/// How far rounding may turn and move a receiver's plane and a caster's against each other beyond the
+/// receiver's own rounding, as a share of the distance: 64 eps more (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-17;
 
-/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 36 eps more.
+const DPSM_PLANE_REACH: f32 = 0x1.000048p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -200,12 +207,12 @@ fn dpsm_plane(
     return DpsmPlane(
         uv - lean * (moved * width),
         lean,
-        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine + (receiver.rounding + DPSM_PLANE_ROUNDING) + moved * pitch * (cosine * cosine),
         cosine,
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + quantum,
         hemisphere,
     );
 }
@@ -384,7 +391,7 @@ fn dpsm_filter_layers(light: DpsmLight, hemisphere: u32) -> vec2<u32> {
 
 /// The depths that four taps read.
 ///
-/// layers: of dpsm_filter_layers; mapped: whether there is a map in each. Domain: coordinates in
+/// layers: of dpsm_filter_layers; mapped: whether there is a map in each; reversed: the light's. Domain: coordinates in
 /// [-1, 2].
 fn dpsm_filter_read(
     maps: texture_depth_2d_array,
@@ -392,6 +399,7 @@ fn dpsm_filter_read(
     at: DpsmFour,
     layers: vec2<u32>,
     mapped: vec2<bool>,
+    reversed: u32,
 ) -> vec4<f32> {
     let layer = select(vec4<u32>(layers.x), vec4<u32>(layers.y), at.crossed);
     let stored = vec4<f32>(
@@ -401,7 +409,8 @@ fn dpsm_filter_read(
         textureSampleLevel(maps, point, vec2<f32>(at.s.w, at.t.w), layer.w, 0),
     );
     let known = select(vec4<bool>(mapped.x), vec4<bool>(mapped.y), at.crossed);
-    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, known);
+    let depths = dpsm_depth_stored_four(stored, reversed);
+    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), depths, known);
 }
 
 /// Which of four taps are lit: no nearer than the receiver's plane.
@@ -481,7 +490,7 @@ fn dpsm_filter_sum(
         let ring = sqrt(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_filter_read(maps, point, four, layers, mapped);
+        let stored = dpsm_filter_read(maps, point, four, layers, mapped, light.reversed);
         sum += dpsm_filter_even(disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share += per;
@@ -571,7 +580,7 @@ fn dpsm_pcss_search(
         let ring = dpsm_pcss_ring(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_filter_read(maps, point, four, layers, mapped);
+        let stored = dpsm_filter_read(maps, point, four, layers, mapped, light.reversed);
         found = dpsm_pcss_found(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share += per;

@@ -10,6 +10,21 @@ fn dpsm_depth(l: f32, near: f32, far: f32) -> f32 {
     return (l - near) / (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
+/// dpsm_depth_stored of four depths.
+///
+/// Domain and bound: as for dpsm_depth_stored.
+fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
+    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+}
+
 /// The depth of a receiver, clamped to [0, 1]: one nearer than near compares as lit, and beyond
 /// far only casters between the spheres shadow it.
 ///
@@ -49,8 +64,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -123,26 +138,30 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
 
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
+/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
+/// share of the distance: 64 eps, 32 for each (docs/bias.md).
+const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
+
+/// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
+const DPSM_BIAS_DISTANCE: f32 = 0x1.8p-19;
 
 /// The same for each unit of near, 10 eps.
 const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
 
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
-
 /// What is left of the bias where the same direction is compared, in units of depth: the format's
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
-/// allowed.
+/// allowed. All but the quantum is in proportion to the distance, whatever far is.
 ///
 /// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
-    return quantum + DPSM_BIAS_DEPTH + spread / (light.far - light.near);
+    return quantum + spread / (light.far - light.near);
 }
 
 // dpsm::plane
@@ -171,12 +190,12 @@ const DPSM_PLANE_DARK: f32 = 0.5;
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 128 eps (docs/plane.md).
-const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+/// How far rounding may turn and move a receiver's plane and a caster's against each other beyond the
+/// receiver's own rounding, as a share of the distance: 64 eps more (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-17;
 
-/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 36 eps more.
+const DPSM_PLANE_REACH: f32 = 0x1.000048p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -235,12 +254,12 @@ fn dpsm_plane(
     return DpsmPlane(
         uv - lean * (moved * width),
         lean,
-        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine + (receiver.rounding + DPSM_PLANE_ROUNDING) + moved * pitch * (cosine * cosine),
         cosine,
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + quantum,
         hemisphere,
     );
 }
@@ -265,7 +284,8 @@ fn dpsm_visibility_plane(
     let four = dpsm_plane_four(at, light);
     let st = dpsm_light_coordinates(light, at.hemisphere, (four.xy + 1.0) / light.size);
     let stored = textureGather(maps, point, st, dpsm_light_layer(light, at.hemisphere));
-    return select(0.0, dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres);
+    let depths = dpsm_depth_stored_four(stored, light.reversed);
+    return select(0.0, dpsm_plane_share(at, four, depths), at.hemisphere < light.hemispheres);
 }
 
 /// The four texels around a receiver: the place of the first, which has the least coordinates,
@@ -320,9 +340,11 @@ fn dpsm_visibility_normal(
     let layer = dpsm_light_layer(light, at.hemisphere);
     let st = dpsm_disk_to_texture(at.uv, light.guard);
     let place = dpsm_light_coordinates(light, at.hemisphere, st);
-    let depths = dpsm_plane_depths(at, receiver.distance, light, quantum, tolerance);
-    let lit = textureSampleCompareLevel(maps, comparison, place, layer, depths.x);
-    let dark = 1.0 - textureSampleCompareLevel(maps, comparison, place, layer, depths.y);
+    let depths = dpsm_plane_depths(at, receiver, light, quantum, tolerance);
+    let first = dpsm_depth_stored(depths.x, light.reversed);
+    let second = dpsm_depth_stored(depths.y, light.reversed);
+    let lit = textureSampleCompareLevel(maps, comparison, place, layer, first);
+    let dark = 1.0 - textureSampleCompareLevel(maps, comparison, place, layer, second);
     let decided = lit + dark;
     let share = select(0.0, lit / decided, decided > 0.0);
     return select(0.0, share, at.hemisphere < light.hemispheres);
@@ -331,18 +353,21 @@ fn dpsm_visibility_normal(
 /// The depths of a moved receiver's own distance, less all bias: what is no nearer than the first is
 /// lit, what is nearer than the second, a texel nearer, is in shadow.
 ///
-/// distance: the receiver's, before it was moved. Domain: as for dpsm_plane, of
+/// receiver: as it was before it was moved. Domain: as for dpsm_plane, of
 /// DPSM_PLANE_DIAGONAL. Bound: docs/plane.md.
 fn dpsm_plane_depths(
     at: DpsmPlane,
-    distance: f32,
+    receiver: DpsmReceiver,
     light: DpsmLight,
     quantum: f32,
     tolerance: f32,
 ) -> vec2<f32> {
     let sine = length(at.lean);
+    let distance = receiver.distance;
     let texel = at.pitch * distance;
-    let own = distance - texel * (DPSM_PLANE_DIAGONAL * sine * at.cosine);
+    let off = receiver.rounding - DPSM_RECEIVER_ROUNDING;
+    let near = distance - distance * (off / max(at.cosine + off, DPSM_SMALLEST));
+    let own = near - texel * (DPSM_PLANE_DIAGONAL * sine * at.cosine);
     let lit = dpsm_receiver_depth(own - texel * DPSM_PLANE_OWN, light.near, light.far);
     let dark = dpsm_receiver_depth(own - texel, light.near, light.far);
     let slack = dpsm_bias_slack(distance, light, quantum, tolerance);

@@ -17,6 +17,21 @@ fn dpsm_distance(depth: f32, near: f32, far: f32) -> f32 {
     return near + depth * (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
+/// dpsm_depth_stored of four depths.
+///
+/// Domain and bound: as for dpsm_depth_stored.
+fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
+    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+}
+
 /// The depth of a receiver, clamped to [0, 1]: one nearer than near compares as lit, and beyond
 /// far only casters between the spheres shadow it.
 ///
@@ -56,8 +71,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -213,20 +228,16 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 64 eps, 32 for each (docs/bias.md).
-const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
-
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
+/// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
+const DPSM_BIAS_DISTANCE: f32 = 0x1.8p-19;
 
 /// The same for each unit of near, 10 eps.
 const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
-
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
@@ -242,8 +253,8 @@ fn dpsm_receiver_cosine(receiver: DpsmReceiver) -> f32 {
 /// that rounding of either plane allows. Where the direction does not meet the plane it is
 /// DPSM_SMALLEST, in front of all: a tap there never darkens.
 ///
-/// Domain: r <= 2^62. Between 1 - 96 eps / cos and 1 times the plane's distance, cos that of the
-/// incidence there, and at most 2^17 times its height.
+/// Domain: r <= 2^62. Between 1 - (rounding + 32 eps) / cos and 1 times the plane's distance, cos that
+/// of the incidence there, and at most 2^17 times its height.
 fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32) -> f32 {
     let d = dpsm_flip(dpsm_edge_terms(uv).xyz, hemisphere);
     let whole = 1.0 + dot(uv, uv);
@@ -251,19 +262,19 @@ fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32
     if facing <= 0.0 {
         return DPSM_SMALLEST;
     }
-    let leaned = facing + DPSM_RECEIVER_ROUNDING * whole;
+    let leaned = facing + receiver.rounding * whole;
     return max(receiver.plane.w * (whole / leaned), DPSM_SMALLEST);
 }
 
 /// What is left of the bias where the same direction is compared, in units of depth: the format's
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
-/// allowed.
+/// allowed. All but the quantum is in proportion to the distance, whatever far is.
 ///
 /// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
-    return quantum + DPSM_BIAS_DEPTH + spread / (light.far - light.near);
+    return quantum + spread / (light.far - light.near);
 }
 
 /// The square of the chord on the unit sphere from a disk point to the farthest corner of the
@@ -284,15 +295,22 @@ fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
 /// depth, for the cosine of its incidence: l (1 - cos a / cos(a - psi)) / (far - near), and
 /// l (1 - cos a) where a <= psi.
 ///
-/// chord_square: dpsm_bias_window. Domain: 0 <= cosine <= 1. Bound: 12 eps l / (far - near)
-/// absolute, beyond what the planes' rounding, which is allowed for, adds.
-fn dpsm_bias_plane(cosine: f32, distance: f32, chord_square: f32, light: DpsmLight) -> f32 {
+/// chord_square: dpsm_bias_window; rounding: the receiver's. Domain: 0 <= cosine <= 1,
+/// 2^-17 <= rounding <= 2. Bound: 12 eps l / (far - near) absolute, beyond what the planes' rounding,
+/// which is allowed for, adds.
+fn dpsm_bias_plane(
+    cosine: f32,
+    distance: f32,
+    chord_square: f32,
+    rounding: f32,
+    light: DpsmLight,
+) -> f32 {
     let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     let fall = 0.5 * chord_square;
     let turn = sqrt(chord_square * (1.0 - 0.25 * chord_square));
     // cos(a - psi) - cos a; the plane's nearest point, at a = 0, if it is within the window
     let steeper = max(sine * turn - cosine * fall, 0.0);
-    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + DPSM_RECEIVER_ROUNDING;
+    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + rounding;
     return distance * (drop / (cosine + drop)) / (light.far - light.near);
 }
 
@@ -307,7 +325,8 @@ fn dpsm_bias_footprint(
     light: DpsmLight,
 ) -> f32 {
     let chord_square = dpsm_bias_window(uv, texels, light);
-    return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
+    let cosine = dpsm_receiver_cosine(receiver);
+    return dpsm_bias_plane(cosine, receiver.distance, chord_square, receiver.rounding, light);
 }
 
 // dpsm::kernel
@@ -432,12 +451,12 @@ const DPSM_PLANE_SHIFT: f32 = 0.25;
 /// How much nearer than plane and receiver, in texels, a stored depth must be to shadow.
 const DPSM_PLANE_DARK: f32 = 0.5;
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 128 eps (docs/plane.md).
-const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+/// How far rounding may turn and move a receiver's plane and a caster's against each other beyond the
+/// receiver's own rounding, as a share of the distance: 64 eps more (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-17;
 
-/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 36 eps more.
+const DPSM_PLANE_REACH: f32 = 0x1.000048p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -496,12 +515,12 @@ fn dpsm_plane(
     return DpsmPlane(
         uv - lean * (moved * width),
         lean,
-        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine + (receiver.rounding + DPSM_PLANE_ROUNDING) + moved * pitch * (cosine * cosine),
         cosine,
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + quantum,
         hemisphere,
     );
 }
@@ -621,11 +640,11 @@ fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> Dps
     var depth = l * reader.depth.x - reader.depth.y;
     if reader.kind != DPSM_TAP_HARD {
         if is_met {
-            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l), uv, 1.0, light);
+            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l, reader.receiver.rounding), uv, 1.0, light);
         } else {
             // within the window the plane is no nearer than its height over the chord
             let chord = sqrt(dpsm_bias_window(uv, 1.0, light));
-            let plane = reader.receiver.plane.w / max(chord, DPSM_SMALLEST);
+            let plane = reader.receiver.plane.w / (chord + reader.receiver.rounding);
             depth = min(depth, plane * reader.depth.x - reader.depth.y);
         }
     }
@@ -979,10 +998,16 @@ fn dpsm_raw_load(maps: texture_2d_array<f32>, texel: vec2<f32>, layer: u32) -> f
 /// DPSM_TAP_LINEAR the four nearest texels, interpolated.
 ///
 /// Domain: coordinates in [-1, 2]. The decision is exact; weights 3 eps N absolute.
-fn dpsm_raw_compare(maps: texture_2d_array<f32>, at: DpsmLookup, kind: u32) -> f32 {
+fn dpsm_raw_compare(
+    maps: texture_2d_array<f32>,
+    at: DpsmLookup,
+    kind: u32,
+    reversed: u32,
+) -> f32 {
     let place = at.coordinates * vec2<f32>(textureDimensions(maps));
     if kind == DPSM_TAP_HARD {
-        return select(0.0, 1.0, at.depth <= dpsm_raw_load(maps, floor(place), at.layer));
+        let held = dpsm_raw_load(maps, floor(place), at.layer);
+        return select(0.0, 1.0, at.depth <= dpsm_depth_stored(held, reversed));
     }
     let first = floor(place - 0.5);
     let share = place - 0.5 - first;
@@ -993,7 +1018,8 @@ fn dpsm_raw_compare(maps: texture_2d_array<f32>, at: DpsmLookup, kind: u32) -> f
         dpsm_raw_load(maps, first + across.yx, at.layer),
         dpsm_raw_load(maps, first + across.xx, at.layer),
     );
-    let lit = select(vec4<f32>(0.0), vec4<f32>(1.0), vec4<f32>(at.depth) <= stored);
+    let depths = dpsm_depth_stored_four(stored, reversed);
+    let lit = select(vec4<f32>(0.0), vec4<f32>(1.0), vec4<f32>(at.depth) <= depths);
     let columns = lit.xz * (1.0 - share.x) + lit.yw * share.x;
     return columns.x * (1.0 - share.y) + columns.y * share.y;
 }
@@ -1006,7 +1032,7 @@ fn dpsm_raw_tap(
     light: DpsmLight,
 ) -> f32 {
     let at = dpsm_filter_lookup(reader, tap, light);
-    return select(0.0, dpsm_raw_compare(maps, at, reader.kind), at.mapped);
+    return select(0.0, dpsm_raw_compare(maps, at, reader.kind, light.reversed), at.mapped);
 }
 
 /// dpsm_filter_hardware by loads.
@@ -1041,7 +1067,7 @@ fn dpsm_raw_pcf(
         var at = own;
         at.coordinates = own.coordinates + offset * texel;
         at.depth = own.depth - bias;
-        sum += dpsm_raw_compare(maps, at, kind);
+        sum += dpsm_raw_compare(maps, at, kind, light.reversed);
         index += 1u;
     }
     return select(0.0, sum / f32(side * side), own.mapped);
@@ -1068,7 +1094,8 @@ fn dpsm_raw_plane(
         dpsm_raw_load(maps, first + across.yx, layer),
         dpsm_raw_load(maps, first, layer),
     );
-    return select(0.0, dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres);
+    let depths = dpsm_depth_stored_four(stored, light.reversed);
+    return select(0.0, dpsm_plane_share(at, four, depths), at.hemisphere < light.hemispheres);
 }
 
 /// dpsm_filter_read by loads.
@@ -1077,6 +1104,7 @@ fn dpsm_raw_read(
     at: DpsmFour,
     layers: vec2<u32>,
     mapped: vec2<bool>,
+    reversed: u32,
 ) -> vec4<f32> {
     let layer = select(vec4<u32>(layers.x), vec4<u32>(layers.y), at.crossed);
     let size = vec2<f32>(textureDimensions(maps));
@@ -1087,7 +1115,8 @@ fn dpsm_raw_read(
         dpsm_raw_load(maps, floor(vec2<f32>(at.s.w, at.t.w) * size), layer.w),
     );
     let known = select(vec4<bool>(mapped.x), vec4<bool>(mapped.y), at.crossed);
-    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), stored, known);
+    let depths = dpsm_depth_stored_four(stored, reversed);
+    return select(vec4<f32>(DPSM_FILTER_UNMAPPED), depths, known);
 }
 
 /// dpsm_filter_sum by loads.
@@ -1111,7 +1140,7 @@ fn dpsm_raw_sum(
         let ring = sqrt(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         sum += dpsm_filter_even(disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share += per;
@@ -1148,7 +1177,7 @@ fn dpsm_raw_disk(
         let ring = dpsm_filter_dense(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_filter_contact(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share += per;
@@ -1225,7 +1254,7 @@ fn dpsm_raw_pcss_search(
         let ring = dpsm_pcss_ring(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_pcss_found(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share += per;

@@ -56,6 +56,27 @@ fn dpsm_highlight(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> 
     return sixteenth * sixteenth;
 }
 
+/// How much of a spot light goes in a direction: all inside the inner angle, none outside the outer one,
+/// between them the square of what is linear in the cosine (glTF's KHR_lights_punctual).
+///
+/// cosine: of the angle to the spot's axis; inner, outer: of the two angles; a thousandth at least is
+/// taken to lie between them. Domain: cosine in [-1, 1], -4 <= outer <= inner <= 1. Bound: 10 eps
+/// absolute.
+fn dpsm_spot(cosine: f32, inner: f32, outer: f32) -> f32 {
+    let share = clamp((cosine - outer) / max(inner - outer, 0.001), 0.0, 1.0);
+    return share * share;
+}
+
+/// What a light's range leaves of it at a distance: 1 - (distance / range)^4, not below 0; the square of
+/// the distance is not in it (glTF's KHR_lights_punctual).
+///
+/// Domain: distance in [0, 2^62], range in [2^-62, 2^127]. Bound: 14 eps absolute.
+fn dpsm_range(distance: f32, range: f32) -> f32 {
+    let share = min(distance / range, 1.0);
+    let square = share * share;
+    return 1.0 - square * square;
+}
+
 /// Where the shadow test of a smoothly shaded triangle should be made: on the curved surface that the
 /// corners' normals suggest, so that coarse triangles do not shadow one another by their edges.
 ///

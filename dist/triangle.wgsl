@@ -10,6 +10,14 @@ fn dpsm_depth(l: f32, near: f32, far: f32) -> f32 {
     return (l - near) / (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
 /// True where a radial distance lies between the clipping spheres, both included.
 ///
 /// Domain: any l without NaN. Exact.
@@ -45,8 +53,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 // dpsm::hemisphere
@@ -454,7 +462,7 @@ fn dpsm_triangle_fragment(
     }
     let stored = dot(uv, uv) <= (1.0 + light.guard) * (1.0 + light.guard);
     let keep = stored && dpsm_triangle_covers(triangle, uv);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     return DpsmCasterFragment(depth, keep && dpsm_within(l, light.near, light.far));
 }
 

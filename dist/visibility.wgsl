@@ -10,6 +10,14 @@ fn dpsm_depth(l: f32, near: f32, far: f32) -> f32 {
     return (l - near) / (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
 /// The depth of a receiver, clamped to [0, 1]: one nearer than near compares as lit, and beyond
 /// far only casters between the spheres shadow it.
 ///
@@ -49,8 +57,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -214,7 +222,8 @@ fn dpsm_visibility(
     bias: f32,
 ) -> f32 {
     let at = dpsm_lookup(p, light);
-    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, at.depth - bias);
+    let reference = dpsm_depth_stored(at.depth - bias, light.reversed);
+    let lit = textureSampleCompareLevel(maps, comparison, at.coordinates, at.layer, reference);
     return select(0.0, lit, at.mapped);
 }
 
@@ -248,7 +257,8 @@ fn dpsm_visibility_vertex(
 ) -> f32 {
     let hemisphere = select(DPSM_BACK, DPSM_FRONT, at.hemisphere_value >= 0.5);
     let st = dpsm_light_coordinates(light, hemisphere, select(at.back, at.front, hemisphere == DPSM_FRONT));
-    let own = clamp(at.depth, 0.0, 1.0) - bias;
+    let inside = clamp(at.depth, 0.0, 1.0);
+    let own = dpsm_depth_stored(inside - bias, light.reversed);
     let lit = textureSampleCompareLevel(maps, comparison, st, dpsm_light_layer(light, hemisphere), own);
     return select(0.0, lit, hemisphere < light.hemispheres);
 }

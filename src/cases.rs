@@ -7,9 +7,9 @@ mod exact;
 mod filters;
 pub mod values;
 
-use crate::scalar::float::{Vec2, Vec3};
+use crate::scalar::float::{Vec2, Vec3, Vec4};
 use crate::scalar::hemisphere::DPSM_BACK;
-use crate::scalar::light::DpsmLight;
+use crate::scalar::light::{DPSM_FORWARD, DPSM_REVERSED, DpsmLight};
 use crate::scalar::ports::{Flat, PORTS, Word};
 use crate::scalar::shade::DpsmCorner;
 use domain::{Finite, Outside, all as any, finite, numbers, projected, sized, up_to, when};
@@ -80,6 +80,18 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_depth" | "dpsm_receiver_depth" => {
             cases.each(&DISTANCES, |l| up_to(63, [l[0]]), |[l, near, far]| (l, near, far));
+        }
+        "dpsm_depth_stored" => {
+            for reversed in [DPSM_FORWARD, DPSM_REVERSED] {
+                let behind = format!(", {reversed}");
+                let domain = |depth: f32| when((0.0..=1.0).contains(&depth));
+                cases.named(&DEPTHS, &behind, domain, |depth| (depth, reversed));
+            }
+        }
+        "dpsm_depth_stored_four" => {
+            let domain = |depth: f32| when((0.0..=1.0).contains(&depth));
+            let four = |depth| Vec4::new(depth, 0.0_f32, 0.25, 1.0);
+            cases.each(&DEPTHS, domain, |depth| (four(depth), DPSM_REVERSED));
         }
         "dpsm_within" => cases.each(&DISTANCES, numbers, |[l, near, far]| (l, near, far)),
         "dpsm_distance" => {
@@ -162,6 +174,16 @@ pub fn of(function: &str) -> Vec<Case> {
         }
         "dpsm_lambert" => cases.each(&DIRECTIONS, any, |to_light| (unit, point(to_light))),
         "dpsm_highlight" => cases.each(&DIRECTIONS, any, |to_light| (unit, point(to_light), unit)),
+        "dpsm_spot" => {
+            let inside = |cosine: f32| when((-1.0..=1.0).contains(&cosine));
+            cases.each(&COSINES, inside, |cosine| (cosine, 0.75, 0.5));
+            cases.named(&COSINES, ", no cone", inside, |cosine| (cosine, -2.0, -3.0));
+            cases.named(&COSINES, ", a sharp one", inside, |cosine| (cosine, 0.5, 0.5));
+        }
+        "dpsm_range" => {
+            let inside = |[l, _, far]: [f32; 3]| up_to(62, [l]).min(up_to(62, [far]));
+            cases.each(&DISTANCES, inside, |[l, _, far]| (l, far));
+        }
         "dpsm_shadow_terminator" => {
             let third = Vec3::splat(1.0 / 3.0);
             let corner = |position, normal| DpsmCorner { position, normal };

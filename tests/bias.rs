@@ -5,9 +5,12 @@ mod common;
 use common::planes::*;
 use common::{CASES, EPS, Worst, light, point, rng, spread, uniform, unit};
 use dpsm::scalar::bias::*;
+use dpsm::scalar::filter::{DPSM_TAP_HARD, DpsmTaps, dpsm_filter_disk};
 use dpsm::scalar::float::{Vec2, Vec3};
-use dpsm::scalar::hemisphere::dpsm_flip;
+use dpsm::scalar::hemisphere::{dpsm_flip, dpsm_to_light};
+use dpsm::scalar::light::DpsmLight;
 use dpsm::scalar::paraboloid::*;
+use dpsm::scalar::plane::dpsm_visibility_plane;
 
 /// Planes for each configuration: with 3 formats, 6 sizes and 3 radii over 1e5 in all.
 const PLANES: usize = 2000;
@@ -21,7 +24,7 @@ fn no_plane_shadows_itself_along_the_texels_centre() {
             for _ in 0..3 * PLANES {
                 let (p, normal) = grazing(&mut rng, size);
                 let map = PlaneMap { p: p.widen(), normal, light, steps, tap: [0, 0] };
-                let receiver = dpsm_receiver(p, normal.narrow());
+                let receiver = dpsm_receiver(p, normal.narrow(), 0.0);
                 let lit =
                     dpsm_visibility_texel_centre(&map, p, receiver, light, quantum(steps), 0.0);
                 assert_eq!(lit, 1.0, "{size} {steps:?} {p:?} {normal:?}");
@@ -41,7 +44,7 @@ fn no_plane_shadows_itself_at_any_texel_of_the_footprints_window() {
                     let (p, normal) = grazing(&mut rng, size);
                     let tap = tap(&mut rng, radius);
                     let map = PlaneMap { p: p.widen(), normal, light, steps, tap };
-                    let receiver = dpsm_receiver(p, normal.narrow());
+                    let receiver = dpsm_receiver(p, normal.narrow(), 0.0);
                     let texels = radius as f32 + 0.5;
                     let q = quantum(steps);
                     let lit = dpsm_visibility_footprint(&map, p, receiver, light, texels, q, 0.0);
@@ -60,7 +63,7 @@ fn footprint_is_tight_where_the_plane_rises_towards_the_windows_corner() {
             let most = (0..PLANES).map(|_| {
                 let (p, normal) = worst(&mut rng, size, radius);
                 let light = plain_light(size).widen();
-                let receiver = dpsm_receiver(p.widen(), normal);
+                let receiver = dpsm_receiver(p.widen(), normal, 0.0);
                 let uv = dpsm_project_own(p.widen());
                 let bias = dpsm_bias_footprint(receiver, uv, f64::from(radius) + 0.5, light);
                 needed(p, normal, plain_light(size), radius) / bias
@@ -79,8 +82,8 @@ fn receivers_plane_is_that_of_either_side_and_any_length() {
     for _ in 0..CASES {
         let p = point(&mut rng, -30, 30);
         let normal = unit(&mut rng) * spread(&mut rng, -49, 60);
-        let receiver = dpsm_receiver(p, normal);
-        assert_eq!(receiver, dpsm_receiver(p, -normal));
+        let receiver = dpsm_receiver(p, normal, 0.0);
+        assert_eq!(receiver, dpsm_receiver(p, -normal, 0.0));
         assert!(receiver.plane.w >= 0.0);
         let l = p.widen().length();
         let given = normal.widen() / normal.widen().length();
@@ -106,12 +109,12 @@ fn receiver_without_a_normal_faces_the_light() {
     let mut rng = rng("no normal");
     for _ in 0..CASES {
         let p = point(&mut rng, -20, 20);
-        let receiver = dpsm_receiver(p, Vec3::splat(0.0));
+        let receiver = dpsm_receiver(p, Vec3::splat(0.0), 0.0);
         let d = p.widen() / p.widen().length();
         assert!((receiver.plane.xyz().widen() - d).length() <= 16.0 * EPS, "{p:?}");
         assert_eq!(receiver.plane.w, receiver.distance);
     }
-    let nowhere: DpsmReceiver<f32> = dpsm_receiver(Vec3::splat(0.0), Vec3::splat(0.0));
+    let nowhere: DpsmReceiver<f32> = dpsm_receiver(Vec3::splat(0.0), Vec3::splat(0.0), 0.0);
     assert_eq!((nowhere.plane.w, nowhere.distance), (0.0, 0.0));
 }
 
@@ -126,7 +129,7 @@ fn plane_is_met_no_farther_than_it_is_and_within_its_bound() {
         let uv = Vec2::new(uniform(&mut rng, -1.2, 1.2), uniform(&mut rng, -1.2, 1.2));
         let hemisphere = rng.u32(0..2);
         let d = dpsm_flip(dpsm_unproject(uv.widen()), hemisphere);
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let l = f64::from(dpsm_receiver_distance(receiver, uv, hemisphere));
         assert!(l > 0.0 && l.is_finite());
         // of the receiver as it was rounded: its own bounds are another test's
@@ -157,13 +160,84 @@ fn slack_is_the_sum_of_its_named_terms() {
         let (quantum, tolerance) = (rng.f32() / 65536.0, rng.f32() / 1024.0);
         let slack = f64::from(dpsm_bias_slack(l, light, quantum, tolerance));
         // a receiver's 10.5 l + 4.5 near (docs/visibility.md), a stored one's 11.5 l + 5.5 near
-        // (docs/caster.md), 2 for the stored depth's and the difference's rounding
+        // (docs/caster.md), 2 of the depth itself for its storing and the difference
         let l = f64::from(l);
-        let rounding = EPS * ((22.0 * l + 10.0 * near) / (far - near) + 2.0);
+        let rounding = EPS * (24.0 * l + 10.0 * near) / (far - near);
         let exact = f64::from(quantum) + rounding + f64::from(tolerance) * l / (far - near);
         worst.note((slack - exact).abs(), 7.0 * EPS * exact, (light, l));
     }
     worst.check("dpsm_bias_slack");
+}
+
+#[test]
+fn slack_of_a_float_is_in_proportion_to_the_distance_whatever_far_is() {
+    for far in [10.0, 1e4, 2e7, 1e12] {
+        let light = DpsmLight { near: far / (1 << 20) as f32, far, ..plain_light(1024) };
+        for l in [light.near, 2.0 * light.near, 1e-3 * far, far] {
+            let slack = f64::from(dpsm_bias_slack(l, light, 0.0, 0.0));
+            let distance = slack * f64::from(light.far - light.near);
+            assert!(distance <= 35.0 * EPS * f64::from(l), "{far} {l} {distance}");
+        }
+    }
+}
+
+#[test]
+fn world_positions_far_from_the_origin_shadow_no_plane() {
+    let mut rng = rng("world");
+    let mut needed = [0; 4];
+    for size in [256, 1024, 4096] {
+        for offset in [0.0_f32, 100.0, 8192.0, 1e5] {
+            let position = Vec3::new(offset, 0.75 * offset, -offset) + unit(&mut rng);
+            let light = DpsmLight { position, ..plain_light(size) };
+            let exact = light.widen();
+            for _ in 0..3 * PLANES {
+                let (p, normal) = grazing(&mut rng, size);
+                let p = p.widen();
+                let to_world =
+                    |v: Vec3<f64>| exact.right * v.x + exact.up * v.y + exact.forward * v.z;
+                // the world position as the vertex stage interpolates it: rounded, up to an eps more
+                let world = exact.position + to_world(p);
+                let loose = |c: f64| (c * (1.0 + EPS * (2.0 * rng.f64() - 1.0))) as f32;
+                let world = [world.x, world.y, world.z].map(loose);
+                let world = Vec3::new(world[0], world[1], world[2]);
+                let seen = dpsm_to_light(world, light);
+                let map = PlaneMap { p, normal, light, steps: None, tap: [0, 0] };
+                let share = |error: f32| {
+                    let receiver = dpsm_receiver(seen, normal.narrow(), error);
+                    [
+                        dpsm_visibility_texel_centre(&map, seen, receiver, light, 0.0, 0.0),
+                        dpsm_visibility_footprint(&map, seen, receiver, light, 0.5, 0.0, 0.0),
+                        dpsm_visibility_plane(&map, seen, receiver, light, 0.0, 0.0),
+                        dpsm_filter_disk(
+                            &map,
+                            seen,
+                            receiver,
+                            0.01,
+                            light,
+                            taps(),
+                            Vec2::new(1.0, 0.0),
+                        ),
+                    ]
+                };
+                let error = dpsm_position_error(world);
+                // seen so edge-on that its position may lie on either side, it may be dark
+                if normal.dot(p) <= f64::from(error) {
+                    continue;
+                }
+                let lit = share(error);
+                assert_eq!(lit, [1.0; 4], "{size} {offset} {p:?} {normal:?}");
+                for (needed, share) in needed.iter_mut().zip(share(0.0)) {
+                    *needed += usize::from(share < 1.0);
+                }
+            }
+        }
+    }
+    println!("shadowed without the term: {needed:?}");
+    assert!(needed.iter().all(|&count| count > 100), "{needed:?}");
+}
+
+fn taps() -> DpsmTaps<f32> {
+    DpsmTaps { count: 16, kind: DPSM_TAP_HARD, quantum: 0.0, tolerance: 0.0 }
 }
 
 #[test]
@@ -200,7 +274,8 @@ fn plane_bias_is_the_drop_to_the_nearest_point_within_the_cone() {
         let psi = std::f64::consts::FRAC_PI_2 * f64::from(spread(&mut rng, -14, 0).abs());
         let l = f64::from(uniform(&mut rng, 0.1, 9.0));
         let chord = 2.0 * (psi / 2.0).sin();
-        let bias = dpsm_bias_plane(incidence.cos(), l, chord * chord, light);
+        let bias =
+            dpsm_bias_plane(incidence.cos(), l, chord * chord, DPSM_RECEIVER_ROUNDING, light);
         let nearest = (incidence - psi).max(0.0).cos();
         let exact = l * (1.0 - incidence.cos() / nearest) / (light.far - light.near);
         // the planes' rounding is allowed for: 64 eps of the distance over the cosine there

@@ -52,7 +52,7 @@ fn occluder_just_above_the_plane_shadows_along_the_texels_centre() {
         let light = plain_light(size).widen();
         let (p, normal) = grazing(&mut rng, size);
         let p = p.widen();
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let at = dpsm_lookup_texel_centre(p, receiver, light, 0.0, 0.0);
         let uv = dpsm_texel_centre(dpsm_project_own(p), light);
         let d = dpsm_flip(dpsm_unproject(uv), at.hemisphere);
@@ -92,7 +92,7 @@ fn balls_never_shadow_their_lit_side() {
             continue; // turned away, or beyond 89.9 degrees
         }
         let map = Map { light, distance: |d| sphere(centre, radius, d, false) };
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let lit = dpsm_visibility_texel_centre(&map, p, receiver, light, 0.0, 0.0);
         assert_eq!(lit, 1.0, "texel centre: {p:?} of {centre:?}, {radius}");
         let lit = dpsm_visibility_footprint(&map, p, receiver, light, 0.5, 0.0, 0.0);
@@ -113,7 +113,7 @@ fn bowls_shadow_themselves_by_no_more_than_their_curvature() {
         let l = p.length();
         let normal = p - centre;
         let map = Map { light, distance: |d| sphere(centre, radius, d, true) };
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let lit = dpsm_visibility_texel_centre(&map, p, receiver, light, 0.0, 0.0);
         shadowed += usize::from(lit == 0.0);
         // docs/bias.md: l^2 psi^2 / (2 R cos^3 a), psi half a texel's diagonal; to first order,
@@ -155,7 +155,7 @@ fn creases_shadow_themselves_within_half_a_texels_diagonal_alone() {
             l.is_finite().then_some(l)
         };
         let map = Map { light, distance };
-        let receiver = dpsm_receiver(p, one);
+        let receiver = dpsm_receiver(p, one, 0.0);
         let lit = dpsm_visibility_texel_centre(&map, p, receiver, light, 0.0, 0.0);
         // the nearest of the crease, by the angle
         let psi = dpsm_bias_window(dpsm_project_own(p), 0.5, light).sqrt();
@@ -193,7 +193,7 @@ fn cubes_faces_shadow_no_plane_either() {
                         _ => 1.0,
                     }
                 };
-                let receiver = dpsm_receiver(p, normal.narrow());
+                let receiver = dpsm_receiver(p, normal.narrow(), 0.0);
                 let q = quantum(steps);
                 let at = dpsm_cube_lookup_texel_centre(p, receiver, light, q);
                 let lit = at.depth <= stored(at.coordinates, [0, 0], at.hemisphere);

@@ -80,7 +80,7 @@ fn layout_is_the_same_in_rust_and_in_the_shader() {
     let rust = rust![
         position: [f32; 3], near: f32, right: [f32; 3], far: f32, up: [f32; 3], guard: f32,
         forward: [f32; 3], size: f32, rectangle: [f32; 4], first_layer: u32, placement: u32,
-        hemispheres: u32, padding: u32,
+        hemispheres: u32, reversed: u32,
     ];
     assert_eq!(shader, rust);
     assert_eq!(*span as usize, size_of::<DpsmLight<f32>>());

@@ -43,7 +43,7 @@ fn maps(light: DpsmLight<f64>, scene: impl Fn(Vec3<f64>) -> f64, sampling: Sampl
 
 /// A receiver that faces the light: its own distance is its plane's, but for curvature.
 fn facing(light: DpsmLight<f64>, p: Vec3<f64>, maps: &DepthMaps) -> f64 {
-    dpsm_visibility_plane(maps, p, dpsm_receiver(p, p), light, 0.0, 0.0)
+    dpsm_visibility_plane(maps, p, dpsm_receiver(p, p, 0.0), light, 0.0, 0.0)
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn plane_is_where_its_receiver_is_and_leans_as_the_directions_turn() {
     for _ in 0..20_000 {
         let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.5, 9.0));
         let normal = unit(&mut rng).widen();
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let at = dpsm_plane(p, receiver, 0.0, light, 0.0, 0.0);
         assert_eq!(at.hemisphere, dpsm_hemisphere(p));
         assert!((at.uv - dpsm_project_own(p)).length() <= 1e-14);
@@ -81,7 +81,7 @@ fn moved_receiver_lies_above_its_plane_by_the_shift_times_the_sine() {
     let light = light();
     for _ in 0..20_000 {
         let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.5, 9.0));
-        let receiver = dpsm_receiver(p, unit(&mut rng).widen());
+        let receiver = dpsm_receiver(p, unit(&mut rng).widen(), 0.0);
         let [still, moved] =
             [0.0, 0.35].map(|shift| dpsm_plane(p, receiver, shift, light, 0.0, 0.0));
         let sine = (1.0 - still.cosine * still.cosine).sqrt();
@@ -110,7 +110,7 @@ fn texels_around_the_receiver_are_weighted_by_their_nearness() {
     let mut rng = rng("four");
     for _ in 0..2_000 {
         let p = unit(&mut rng).widen() * 5.0;
-        let at = dpsm_plane(p, dpsm_receiver(p, p), DPSM_PLANE_SHIFT, light, 0.0, 0.0);
+        let at = dpsm_plane(p, dpsm_receiver(p, p, 0.0), DPSM_PLANE_SHIFT, light, 0.0, 0.0);
         let four = dpsm_plane_four(at, light);
         let mut sum = 0.0;
         for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
@@ -138,7 +138,7 @@ fn what_is_less_than_half_a_texel_in_front_says_nothing_and_more_is_shadow() {
     for sampling in [Sampling::Nearest, Sampling::Linear] {
         let in_front = |texels: f64| {
             let maps = maps(light, |_| l - texels * pitch * l, sampling);
-            let receiver = dpsm_receiver(p, p);
+            let receiver = dpsm_receiver(p, p, 0.0);
             (facing(light, p, &maps), dpsm_visibility_normal(&maps, p, receiver, light, 0.0, 0.0))
         };
         assert_eq!(in_front(0.0), (1.0, 1.0));
@@ -154,9 +154,9 @@ fn own_distance_is_lit_to_three_tenths_of_a_texel_and_dark_from_a_whole_one() {
     let mut rng = rng("depths");
     for _ in 0..2_000 {
         let p = unit(&mut rng).widen() * 5.0;
-        let receiver = dpsm_receiver(p, unit(&mut rng).widen());
+        let receiver = dpsm_receiver(p, unit(&mut rng).widen(), 0.0);
         let at = dpsm_plane(p, receiver, DPSM_PLANE_DIAGONAL, light, 0.0, 0.0);
-        let depths = dpsm_plane_depths(at, receiver.distance, light, 0.0, 0.0);
+        let depths = dpsm_plane_depths(at, receiver, light, 0.0, 0.0);
         let texel = at.pitch * receiver.distance / (light.far - light.near);
         assert!((depths.x - depths.y - 0.7 * texel).abs() <= 1e-12, "{depths:?}");
         // no farther than the moved receiver's own
@@ -169,7 +169,7 @@ fn own_distance_is_lit_to_three_tenths_of_a_texel_and_dark_from_a_whole_one() {
 fn undecided_texels_are_left_out_of_the_mean() {
     let light = light();
     let p = Vec3::new(1.0, 2.0, 4.0);
-    let at = dpsm_plane(p, dpsm_receiver(p, p), DPSM_PLANE_SHIFT, light, 0.0, 0.0);
+    let at = dpsm_plane(p, dpsm_receiver(p, p, 0.0), DPSM_PLANE_SHIFT, light, 0.0, 0.0);
     let four = Vec4::new(10.0, 20.0, 0.25, 0.25);
     let [lit, undecided, dark] =
         [1.0, 1.0 - 0.25 * at.pitch, 0.5].map(|k| k * at.distance - at.near);
@@ -191,7 +191,7 @@ fn empty_maps_light_receivers_beyond_far_and_a_missing_map_darkens() {
         let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.01, 100.0));
         assert_eq!(facing(light, p, &empty), 1.0, "{p:?}");
         let normal = unit(&mut rng).widen();
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         assert_eq!(dpsm_visibility_normal(&empty, p, receiver, light, 0.0, 0.0), 1.0, "{p:?}");
         let front = f64::from(u8::from(p.z >= 0.0));
         assert_eq!(facing(half, p, &empty), front, "{p:?}");
@@ -206,7 +206,7 @@ fn taps_read_the_directions_that_they_stand_for_on_either_side_of_the_rim() {
     let mut crossed = 0;
     for _ in 0..20_000 {
         let p = unit(&mut rng).widen() * 5.0;
-        let at = dpsm_plane(p, dpsm_receiver(p, p), 0.0, light, 0.0, 0.0);
+        let at = dpsm_plane(p, dpsm_receiver(p, p, 0.0), 0.0, light, 0.0, 0.0);
         let turn = f64::from(uniform(&mut rng, 0.0, std::f32::consts::TAU));
         let rotation = Vec2::new(turn.cos(), turn.sin());
         let tangent = f64::from(uniform(&mut rng, 0.01, 0.5));
@@ -240,7 +240,7 @@ fn taps_read_the_directions_that_they_stand_for_on_either_side_of_the_rim() {
 fn wall_beside_the_receiver_is_no_blocker_and_one_on_the_way_is() {
     let light = light();
     let p = Vec3::new(0.0, 0.0, 4.0);
-    let at = dpsm_plane(p, dpsm_receiver(p, p), DPSM_FILTER_SHIFT, light, 0.0, 0.0);
+    let at = dpsm_plane(p, dpsm_receiver(p, p, 0.0), DPSM_FILTER_SHIFT, light, 0.0, 0.0);
     let disk = dpsm_filter_cone(at, 0.05, 0.05, Vec2::new(1.0, 0.0));
     let says = |distance: f64, ring: f64| {
         let stored = dpsm_depth(distance, light.near, light.far);
@@ -269,7 +269,7 @@ fn kernel_of_fixed_size_narrows_towards_contact() {
         };
         let maps = maps(light, scene, Sampling::Nearest);
         let p = Vec3::new(off, 0.0, 4.0);
-        let receiver = dpsm_receiver(p, Vec3::new(0.0, 0.0, 1.0));
+        let receiver = dpsm_receiver(p, Vec3::new(0.0, 0.0, 1.0), 0.0);
         let taps = DpsmTaps { count: 256, kind: DPSM_TAP_HARD, quantum: 0.0, tolerance: 0.0 };
         dpsm_filter_disk(&maps, p, receiver, 0.2, light, taps, Vec2::new(1.0, 0.0))
     };

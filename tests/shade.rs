@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{CASES, EPS, Worst, rng, unit};
+use common::{CASES, EPS, Worst, rng, uniform, unit};
 use dpsm::scalar::bounds::Bound;
 use dpsm::scalar::float::{Float, Vec3};
 use dpsm::scalar::shade::*;
@@ -193,4 +193,43 @@ fn terminator_stays_within_its_bound() {
         worst.note(error.eps, error.bound, (p, w, corners));
     }
     worst.check("dpsm_shadow_terminator");
+}
+
+#[test]
+fn spots_fade_between_their_angles() {
+    let mut rng = rng("spot");
+    let mut worst = Worst::default();
+    for _ in 0..CASES {
+        let outer = uniform(&mut rng, -1.0, 0.9);
+        let inner = uniform(&mut rng, outer, 1.0);
+        let cosine = uniform(&mut rng, -1.0, 1.0);
+        let share = dpsm_spot(cosine, inner, outer);
+        let [c, i, o] = [cosine, inner, outer].map(f64::from);
+        let linear = ((c - o) / (i - o).max(1e-3)).clamp(0.0, 1.0);
+        worst.note((f64::from(share) - linear * linear).abs(), 10.0 * EPS, (cosine, inner, outer));
+    }
+    worst.check("dpsm_spot");
+    assert_eq!([dpsm_spot(0.9, 0.8, 0.5), dpsm_spot(0.4, 0.8, 0.5)], [1.0, 0.0]);
+    // angles that are one
+    assert_eq!([dpsm_spot(0.6, 0.5, 0.5), dpsm_spot(0.5, 0.5, 0.5)], [1.0, 0.0]);
+    // no cone at all
+    assert_eq!([-1.0, 0.0, 1.0].map(|cosine| dpsm_spot(cosine, -2.0, -3.0)), [1.0; 3]);
+}
+
+#[test]
+fn ranges_leave_nothing_at_their_end() {
+    let mut rng = rng("range");
+    let mut worst = Worst::default();
+    for _ in 0..CASES {
+        let (distance, range) = (uniform(&mut rng, 0.0, 20.0), uniform(&mut rng, 0.1, 20.0));
+        let exact = 1.0 - (f64::from(distance) / f64::from(range)).min(1.0).powi(4);
+        let share = f64::from(dpsm_range(distance, range));
+        worst.note((share - exact).abs(), 14.0 * EPS, (distance, range));
+    }
+    worst.check("dpsm_range");
+    assert_eq!(
+        [dpsm_range(0.0, 5.0), dpsm_range(5.0, 5.0), dpsm_range(50.0, 5.0)],
+        [1.0, 0.0, 0.0]
+    );
+    assert_eq!(dpsm_range(1e18, f32::MAX), 1.0);
 }

@@ -25,7 +25,7 @@ pub fn planes() {
         let light = plain_light(size);
         let (p, normal) = grazing(&mut rng, size);
         let map = PlaneMap { p: p.widen(), normal, light, steps, tap: [0, 0] };
-        let receiver = dpsm_receiver(p, normal.narrow());
+        let receiver = dpsm_receiver(p, normal.narrow(), 0.0);
         let lit = dpsm_visibility_texel_centre(&map, p, receiver, light, quantum(steps), 0.0);
         shadowed += usize::from(lit == 0.0);
     }
@@ -37,7 +37,7 @@ pub fn planes() {
             let (p, normal) = grazing(&mut rng, size);
             let tap = tap(&mut rng, radius);
             let map = PlaneMap { p: p.widen(), normal, light, steps, tap };
-            let receiver = dpsm_receiver(p, normal.narrow());
+            let receiver = dpsm_receiver(p, normal.narrow(), 0.0);
             let (texels, q) = (radius as f32 + 0.5, quantum(steps));
             let lit = dpsm_visibility_footprint(&map, p, receiver, light, texels, q, 0.0);
             shadowed += usize::from(lit == 0.0);
@@ -52,7 +52,7 @@ pub fn planes() {
             let most = (0..40_000).map(|_| {
                 let (p, normal) = worst(&mut rng, size, radius);
                 let light = plain_light(size).widen();
-                let receiver = dpsm_receiver(p.widen(), normal);
+                let receiver = dpsm_receiver(p.widen(), normal, 0.0);
                 let texels = f64::from(radius) + 0.5;
                 let bias =
                     dpsm_bias_footprint(receiver, dpsm_project_own(p.widen()), texels, light);

@@ -51,7 +51,7 @@ fn pixel(
     p: vec3<f32>,
     normal: vec3<f32>,
 ) -> f32 {
-    let receiver = dpsm_receiver(p, normal);
+    let receiver = dpsm_receiver(p, normal, 0.0);
 ";
 
 /// Name, sampling and body of each variant; each is compared with the variant named last.
@@ -199,8 +199,8 @@ fn times(device: &Device) -> Result<(), GpuError> {
     });
     let point = dpsm::gpu::point_sampler(device)?;
     let samplers = [
-        comparison_sampler(device, Sampling::Nearest)?,
-        comparison_sampler(device, Sampling::Linear)?,
+        comparison_sampler(device, Sampling::Nearest, false)?,
+        comparison_sampler(device, Sampling::Linear, false)?,
     ];
     let mut evaluators = Vec::new();
     for (_, _, body, _) in VARIANTS {

@@ -238,9 +238,9 @@ impl Pose<'_> {
                 for method in METHODS {
                     let mut casting = casting.clone();
                     for of in &mut casting {
-                        *of = match of {
+                        *of = match *of {
                             Casting::By(_) => Casting::By(method),
-                            Casting::LeftOut => Casting::LeftOut,
+                            other => other,
                         };
                     }
                     let settings = Settings {

@@ -1,7 +1,7 @@
 //! Random records over a function's domain, by its arguments' names.
 
 use crate::reflect::{Kind, Shape, Signature};
-use crate::scalar::bias::dpsm_receiver;
+use crate::scalar::bias::{DPSM_RECEIVER_ROUNDING, dpsm_receiver};
 use crate::scalar::classify::dpsm_classify_part;
 use crate::scalar::filter::{DpsmTaps, dpsm_filter_cone, dpsm_filter_reader};
 use crate::scalar::float::{Vec2, Vec3};
@@ -83,11 +83,16 @@ impl Records {
                 }
                 ("normal" | "to_light" | "to_eye", 3) => unit(rng).write(&mut words),
                 ("guard" | "visibility" | "bias" | "tau" | "depth_tolerance", 1)
-                | ("cosine" | "window" | "quantum" | "tolerance", 1) => {
+                | ("cosine" | "inner" | "window" | "quantum" | "tolerance", 1) => {
                     words.push(Word::Float(rng.f32()));
                 }
+                ("outer", 1) => words.push(Word::Float(-rng.f32())),
                 ("texels" | "chord_square", 1) => {
                     spread(rng, -24, 1).abs().write(&mut words);
+                }
+                ("error", 1) => error(rng).write(&mut words),
+                ("rounding", 1) => {
+                    (DPSM_RECEIVER_ROUNDING as f32 + rng.f32() * rng.f32()).write(&mut words)
                 }
                 ("near", 1) => near.write(&mut words),
                 ("far", 1) => (near * (1.0 + spread(rng, -10, 12).abs())).write(&mut words),
@@ -101,10 +106,11 @@ impl Records {
                 ("position", 2) => Vec2::new(map * rng.f32(), map * rng.f32()).write(&mut words),
                 ("st", 2) => Vec2::new(rng.f32(), rng.f32()).write(&mut words),
                 ("depth", 1) => rng.f32().write(&mut words),
+                ("depths", 4) => [0; 4].map(|_| rng.f32()).write(&mut words),
                 // seldom below 0: nothing is promised there
                 // of a cube's slack, near is the light's
                 ("z", 1) => spread(rng, 0, 12).abs().write(&mut words),
-                ("l" | "limit" | "rise" | "height" | "pitch" | "farthest", 1)
+                ("l" | "limit" | "rise" | "height" | "pitch" | "farthest" | "range", 1)
                 | ("distance" | "blocker" | "radius" | "tangent" | "longest_edge", 1) => {
                     spread(rng, -24, 10).abs().write(&mut words);
                 }
@@ -117,9 +123,9 @@ impl Records {
                 ("ambient" | "diffuse" | "specular" | "full", 3) => {
                     Vec3::new(rng.f32(), rng.f32(), rng.f32()).write(&mut words);
                 }
-                ("receiver", 5) => {
+                ("receiver", 6) => {
                     let (p, normal) = (point(rng, -24, 24), unit(rng) * spread(rng, -24, 24));
-                    dpsm_receiver(p, normal).write(&mut words);
+                    dpsm_receiver(p, normal, error(rng)).write(&mut words);
                 }
                 ("offset", 2) => (disk(rng) * 0.6).write(&mut words),
                 ("direction" | "lean", 2) => disk(rng).write(&mut words),
@@ -130,14 +136,14 @@ impl Records {
                 ("taps", 4) => {
                     (rng.u32(1..64), rng.u32(0..2), rng.f32(), rng.f32()).write(&mut words);
                 }
-                ("reader", 16) => {
+                ("reader", 17) => {
                     let taps = DpsmTaps {
                         count: 16,
                         kind: rng.u32(0..2),
                         quantum: 1e-5,
                         tolerance: 1e-3 * rng.f32(),
                     };
-                    let receiver = dpsm_receiver(point(rng, -24, 24), unit(rng));
+                    let receiver = dpsm_receiver(point(rng, -24, 24), unit(rng), error(rng));
                     dpsm_filter_reader(receiver, light(rng), taps).write(&mut words);
                 }
                 ("found", 8) => {
@@ -221,10 +227,15 @@ impl Records {
     }
 }
 
+/// Of receivers at the world's origin, and anywhere.
+fn error(rng: &mut Rng) -> f32 {
+    if rng.bool() { 0.0 } else { spread(rng, -40, 4).abs() }
+}
+
 /// A receiver in its map.
 fn plane(rng: &mut Rng) -> DpsmPlane<f32> {
     let p = point(rng, -24, 24);
-    let receiver = dpsm_receiver(p, unit(rng));
+    let receiver = dpsm_receiver(p, unit(rng), error(rng));
     dpsm_plane(p, receiver, rng.f32(), light(rng), 1e-5 * rng.f32(), 1e-3 * rng.f32())
 }
 

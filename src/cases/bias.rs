@@ -3,28 +3,34 @@
 use super::domain::{Promise, all as any, normals, received, up_to};
 use super::values::*;
 use super::{Cases, disk, point};
-use crate::scalar::bias::{DpsmReceiver, dpsm_receiver};
+use crate::scalar::bias::{DPSM_RECEIVER_ROUNDING, DpsmReceiver, dpsm_receiver};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_FRONT};
 use crate::scalar::light::DpsmLight;
 
 /// The format's quantum and the method's tolerance in the cases.
 const SLACK: (f32, f32) = (1.0 / 65535.0, 9e-4);
 
+/// A receiver's rounding in the cases.
+const ROUNDING: f32 = DPSM_RECEIVER_ROUNDING as f32;
+
 /// Adds the cases of one of these functions.
 pub fn add(function: &str, cases: &mut Cases) {
     let ordinary = point(POINTS.rows[0].1);
-    let of = |normal: [f32; 3]| -> DpsmReceiver<f32> { dpsm_receiver(ordinary, point(normal)) };
+    let of =
+        |normal: [f32; 3]| -> DpsmReceiver<f32> { dpsm_receiver(ordinary, point(normal), 0.0) };
     let oblique = of([0.0, 1.0, 0.0]);
     let inside = disk(DISKS.rows[1].1);
     // a point with a plane of one normal, and the point (1, 2, 3) with planes of each
-    let facing = |p| (point(p), dpsm_receiver(point(p), point([0.0, 0.6, -0.8])));
+    let facing = |p| (point(p), dpsm_receiver(point(p), point([0.0, 0.6, -0.8]), 0.0));
     let normal_at = |normal| (ordinary, of(normal));
     let upright = (ordinary, oblique);
     match function {
+        "dpsm_position_error" => cases.each(&POINTS, |p| up_to(126, p), point),
         "dpsm_receiver" => {
-            cases.each(&NORMALS, normals, |normal| (ordinary, point(normal)));
-            cases.each(&POINTS, received, |p| (point(p), point([0.0, 0.6, -0.8])));
-            cases.named(&POINTS, ", no normal", received, |p| (point(p), point([0.0; 3])));
+            let error = 1e-3_f32;
+            cases.each(&NORMALS, normals, |normal| (ordinary, point(normal), error));
+            cases.each(&POINTS, received, |p| (point(p), point([0.0, 0.6, -0.8]), error));
+            cases.named(&POINTS, ", no normal", received, |p| (point(p), point([0.0; 3]), 0.0_f32));
         }
         "dpsm_receiver_cosine" => {
             cases.each(&NORMALS, normals, of);
@@ -55,10 +61,12 @@ pub fn add(function: &str, cases: &mut Cases) {
         "dpsm_bias_plane" => {
             for (chord, square, _) in CHORDS.rows {
                 let behind = format!(", {chord}");
-                cases.named(&COSINES, &behind, any, |cosine| (cosine, 3.0, *square, LIGHT));
+                cases.named(&COSINES, &behind, any, |cosine| {
+                    (cosine, 3.0, *square, ROUNDING, LIGHT)
+                });
             }
-            cases.each(&CHORDS, any, |square| (0.5, 3.0, square, LIGHT));
-            cases.each(&LIGHTS, any, |light| (0.5, 3.0, 1.0 / 4096.0, light));
+            cases.each(&CHORDS, any, |square| (0.5, 3.0, square, ROUNDING, LIGHT));
+            cases.each(&LIGHTS, any, |light| (0.5, 3.0, 1.0 / 4096.0, ROUNDING, light));
         }
         "dpsm_bias_footprint" => {
             cases.each(&NORMALS, normals, |normal| (of(normal), inside, 0.5, LIGHT));
@@ -99,10 +107,6 @@ pub fn add(function: &str, cases: &mut Cases) {
             cases.each(&NORMALS, normals, |normal| (normal_at(normal), 1.0, LIGHT, SLACK.0));
             cases.each(&WINDOWS, any, |texels| (upright, texels, LIGHT, SLACK.0));
             cases.each(&LIGHTS, any, |light| (upright, 0.5, light, SLACK.0));
-        }
-        "dpsm_cube_lookup_rising" => {
-            cases.each(&POINTS, received, |p| (point(p), 1.0, 0.01, LIGHT, SLACK.0));
-            cases.each(&LIGHTS, any, |light| (ordinary, 1.0, 0.01, light, SLACK.0));
         }
         _ => {}
     }

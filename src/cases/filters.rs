@@ -20,11 +20,11 @@ pub fn add(function: &str, cases: &mut Cases) {
     let kernels = |p| sized(-51, 50, p);
     let slanted = point([3.0, 4.0, -1.0]);
     let taps = |kind| DpsmTaps { count: 16, kind, quantum: 1e-5_f32, tolerance: 1e-3 };
-    let receiver = dpsm_receiver(point([1.0, 2.0, -0.5]), point([0.0, 0.6, 0.8]));
+    let receiver = dpsm_receiver(point([1.0, 2.0, -0.5]), point([0.0, 0.6, 0.8]), 0.0);
     const PLAIN: [f32; 3] = [3.0, 4.0, -1.0];
     let facing = point([0.0, 0.6, -0.8]);
     let at = |p: [f32; 3]| {
-        dpsm_plane(point(p), dpsm_receiver(point(p), facing), 0.45_f32, LIGHT, 1e-5, 1e-3)
+        dpsm_plane(point(p), dpsm_receiver(point(p), facing, 0.0), 0.45_f32, LIGHT, 1e-5, 1e-3)
     };
     let turned = Vec2::new(0.6_f32, 0.8);
     let disk_of = |p: [f32; 3]| dpsm_filter_cone(at(p), 0.125, 0.0625, turned);
@@ -68,7 +68,7 @@ pub fn add(function: &str, cases: &mut Cases) {
                 cases.named(&TAPS, name, any, |uv| read(uv, receiver, LIGHT));
                 cases.named(&LIGHTS, name, any, |light| read(TAPS.rows[1].1, receiver, light));
                 cases.named(&POINTS, name, received, |p| {
-                    let facing = dpsm_receiver(point(p), point([0.0, 0.6, -0.8]));
+                    let facing = dpsm_receiver(point(p), point([0.0, 0.6, -0.8]), 0.0);
                     read(TAPS.rows[1].1, facing, LIGHT)
                 });
             }
@@ -148,14 +148,21 @@ pub fn add(function: &str, cases: &mut Cases) {
             let facing = point([0.0, 0.6, -0.8]);
             let points = |p| sized(-51, 60, p);
             cases.each(&POINTS, points, |p| {
-                (point(p), dpsm_receiver(point(p), facing), 0.35_f32, LIGHT, 1e-5_f32, 1e-3_f32)
+                (
+                    point(p),
+                    dpsm_receiver(point(p), facing, 0.0),
+                    0.35_f32,
+                    LIGHT,
+                    1e-5_f32,
+                    1e-3_f32,
+                )
             });
             cases.each(&LIGHTS, any, |light| {
-                (slanted, dpsm_receiver(slanted, facing), 0.35_f32, light, 1e-5_f32, 1e-3_f32)
+                (slanted, dpsm_receiver(slanted, facing, 0.0), 0.35_f32, light, 1e-5_f32, 1e-3_f32)
             });
             let normals = |n| super::domain::normals(n);
             cases.each(&NORMALS, normals, |n| {
-                (slanted, dpsm_receiver(slanted, point(n)), 0.35_f32, LIGHT, 0.0_f32, 0.0_f32)
+                (slanted, dpsm_receiver(slanted, point(n), 0.0), 0.35_f32, LIGHT, 0.0_f32, 0.0_f32)
             });
         }
         "dpsm_plane_four" => {
@@ -171,7 +178,7 @@ pub fn add(function: &str, cases: &mut Cases) {
             cases.each(
                 &POINTS,
                 |p| sized(-51, 60, p),
-                |p| (at(p), point(p).length(), LIGHT, 1e-5_f32, 1e-3_f32),
+                |p| (at(p), dpsm_receiver(point(p), facing, 0.25), LIGHT, 1e-5_f32, 1e-3_f32),
             );
         }
         "dpsm_lights_turn" => {

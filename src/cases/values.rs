@@ -2,7 +2,9 @@
 //! them, and the wiring beside this file says which function takes which.
 
 use crate::scalar::float::{Vec3, Vec4};
-use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
+use crate::scalar::light::{
+    DPSM_ATLAS, DPSM_FORWARD, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DPSM_REVERSED, DpsmLight,
+};
 
 /// One row: the value's name, the value, and what comes out of it.
 pub type Row<V> = (&'static str, V, &'static str);
@@ -63,7 +65,7 @@ pub const LIGHT: DpsmLight<f32> = DpsmLight {
     first_layer: 6,
     placement: DPSM_LAYERS,
     hemispheres: DPSM_OMNIDIRECTIONAL,
-    padding: 0,
+    reversed: DPSM_FORWARD,
 };
 
 const fn at(distance: f32) -> DpsmLight<f32> {
@@ -188,6 +190,7 @@ values! {
         ("one hemisphere", DpsmLight { hemispheres: 1, ..LIGHT }, "no map behind: not mapped"),
         ("layer 2^31", DpsmLight { first_layer: 1 << 31, ..LIGHT }, "layers are exact"),
         ("last layers", DpsmLight { first_layer: u32::MAX - 5, ..LIGHT }, "layers are exact"),
+        ("reversed", DpsmLight { reversed: DPSM_REVERSED, ..LIGHT }, "1 less each depth"),
         ("1e4 from the origin", at(1e4), "positions round to 1e-3"),
         ("1e6 from the origin", at(1e6), "positions round to 0.06"),
         ("1e8 from the origin", at(1e8), "positions round to 8; finite"),
@@ -476,7 +479,7 @@ impl Shown for DpsmLight<f32> {
                 })+
             };
         }
-        differs!(near, far, guard, size, first_layer, placement, hemispheres);
+        differs!(near, far, guard, size, first_layer, placement, hemispheres, reversed);
         for (name, own, other) in [
             ("position", self.position, LIGHT.position),
             ("right", self.right, LIGHT.right),

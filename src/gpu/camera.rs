@@ -96,7 +96,8 @@ impl<'a> Camera<'a> {
         };
         let uniforms = frame.settings.places().iter().map(uniform).collect::<Result<_, _>>()?;
         let constants = constants(frame);
-        let sampler = comparison_sampler(device, frame.settings.sampling_taken())?;
+        let sampler =
+            comparison_sampler(device, frame.settings.sampling_taken(), frame.settings.reversed)?;
         let point = point_sampler(device)?;
         let all: Vec<u32> = maps.lights.iter().flat_map(light_words).collect();
         let bytes = bytemuck::cast_slice(&all);
@@ -236,8 +237,13 @@ impl<'a> Camera<'a> {
     }
 }
 
-/// A sampler that compares with less-equal and clamps at the edges.
-pub fn comparison_sampler(device: &Device, sampling: Sampling) -> Result<wgpu::Sampler, GpuError> {
+/// A sampler that compares with less-equal, or for reversed maps with greater-equal, and clamps at the
+/// edges.
+pub fn comparison_sampler(
+    device: &Device,
+    sampling: Sampling,
+    reversed: bool,
+) -> Result<wgpu::Sampler, GpuError> {
     let filter = match sampling {
         Sampling::Nearest => wgpu::FilterMode::Nearest,
         Sampling::Linear => wgpu::FilterMode::Linear,
@@ -247,7 +253,10 @@ pub fn comparison_sampler(device: &Device, sampling: Sampling) -> Result<wgpu::S
             label: Some("comparison"),
             mag_filter: filter,
             min_filter: filter,
-            compare: Some(wgpu::CompareFunction::LessEqual),
+            compare: Some(match reversed {
+                false => wgpu::CompareFunction::LessEqual,
+                true => wgpu::CompareFunction::GreaterEqual,
+            }),
             ..Default::default()
         })
     })

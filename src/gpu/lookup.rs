@@ -5,7 +5,7 @@ use super::maps::ShadowMaps;
 use super::passes::{light_words, shader, uniform_buffer};
 use super::timer::{ALONE, Stamps, render_writes};
 use super::{Device, GpuError};
-use crate::render::{AMBIENT, Bias, Filter, Frame, Projection, SPECULAR, View};
+use crate::render::{AMBIENT, Bias, Filter, Frame, Projection, SPECULAR, Shine, View};
 use crate::scalar::float::Vec3;
 use crate::scalar::light::DpsmLight;
 
@@ -48,12 +48,14 @@ pub fn camera_uniform(
     words.extend(light_words(light));
     let settings = &frame.settings;
     let [_, tolerance] = settings.tolerances();
-    let quantum = settings.format.quantum();
+    let quantum = settings.quantum();
     let biases = [frame.bias, quantum, tolerance, settings.window()];
     words.extend(biases.map(f32::to_bits));
     words.extend(frame.filter_words());
     words.extend(view.shift.map(f32::to_bits));
     words.push(frame.settings.terminator.into());
+    let Shine { cone: [inner, outer], range } = frame.shine;
+    words.extend([inner, outer, range].map(f32::to_bits));
     // a struct is as large as its alignment asks
     words.resize(words.len().next_multiple_of(4), 0);
     uniform_buffer(device, &words)
@@ -119,7 +121,8 @@ impl PointTests {
         points: &wgpu::Buffer,
     ) -> Result<PointTest, GpuError> {
         let uniform = camera_uniform(device, frame, &frame.view, &maps.lights[0])?;
-        let sampler = comparison_sampler(device, frame.settings.sampling_taken())?;
+        let sampler =
+            comparison_sampler(device, frame.settings.sampling_taken(), frame.settings.reversed)?;
         let point = point_sampler(device)?;
         let fragment = match frame.settings.method.projection() {
             Projection::Paraboloid => "test_fragment",

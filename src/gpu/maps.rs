@@ -17,7 +17,7 @@ use super::passes::{
 use super::texels::Texels;
 use super::{Device, GpuError};
 use crate::render::{Extent, Format, Frame, Method, Passes, Settings};
-use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DpsmLight};
+use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DPSM_REVERSED, DpsmLight};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scalar::paraboloid::dpsm_texel_width;
 
@@ -141,7 +141,7 @@ impl ShadowMaps {
         for &views in &views {
             for &Chunk { method, .. } in &chunks {
                 if let Entry::Vacant(vacant) = by_views.entry((views, method)) {
-                    vacant.insert(pipelines(device, &layout, method, settings.format, views)?);
+                    vacant.insert(pipelines(device, &layout, method, settings.stored(), views)?);
                 }
             }
         }
@@ -225,7 +225,8 @@ impl ShadowMaps {
                 depths.extend_from_slice(&maps[row(map, y)..][..size]);
             }
         }
-        Ok(DepthMaps { size: size as u32, layers: count, depths, sampling })
+        let reversed = light.reversed == DPSM_REVERSED;
+        Ok(DepthMaps { size: size as u32, layers: count, depths, sampling, reversed })
     }
 }
 

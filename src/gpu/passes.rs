@@ -4,7 +4,7 @@ use super::mesh::{POSITION_LAYOUT, SURFACE_LAYOUT};
 use super::multiview::{multiview_text, view_mask};
 use super::{Device, GpuError};
 use crate::link::link_source;
-use crate::render::{Format, Method};
+use crate::render::{Format, Method, Settings};
 use crate::scalar::light::DpsmLight;
 use crate::validate::validate;
 
@@ -35,6 +35,32 @@ enum Reads {
     Positions,
     Surfaces,
     Nothing,
+}
+
+/// How maps store depths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stored {
+    /// Storage of the maps.
+    pub format: Format,
+    /// Whether they hold 1 less the depth.
+    pub reversed: bool,
+}
+
+impl Stored {
+    /// What is drawn into them.
+    fn compare(self) -> wgpu::CompareFunction {
+        match self.reversed {
+            false => wgpu::CompareFunction::Less,
+            true => wgpu::CompareFunction::Greater,
+        }
+    }
+}
+
+impl Settings {
+    /// How a frame's maps store depths.
+    pub(super) fn stored(&self) -> Stored {
+        Stored { format: self.format, reversed: self.reversed }
+    }
 }
 
 /// Vertex and fragment entry points.
@@ -83,7 +109,7 @@ pub fn pipelines(
     device: &Device,
     bindings: &wgpu::BindGroupLayout,
     method: Method,
-    format: Format,
+    maps: Stored,
     views: u32,
 ) -> Result<Vec<wgpu::RenderPipeline>, GpuError> {
     let text = concat!(
@@ -102,7 +128,7 @@ pub fn pipelines(
             bind_group_layouts: &[Some(bindings)],
             immediate_size: 0,
         });
-        let make = |stages: &Stages| pipeline(device, &module, &layout, *stages, format, views);
+        let make = |stages: &Stages| pipeline(device, &module, &layout, *stages, maps, views);
         stages(method).iter().map(make).collect()
     })
 }
@@ -112,7 +138,7 @@ fn pipeline(
     module: &wgpu::ShaderModule,
     layout: &wgpu::PipelineLayout,
     (vertex, fragment, reads): Stages,
-    format: Format,
+    maps: Stored,
     views: u32,
 ) -> wgpu::RenderPipeline {
     let buffers: &[_] = match reads {
@@ -130,7 +156,7 @@ fn pipeline(
             buffers,
         },
         primitive: Default::default(),
-        depth_stencil: Some(depth_state(format.texture(), wgpu::CompareFunction::Less)),
+        depth_stencil: Some(depth_state(maps.format.texture(), maps.compare())),
         multisample: Default::default(),
         fragment: fragment.map(|fragment| wgpu::FragmentState {
             module,

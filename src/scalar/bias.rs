@@ -1,6 +1,6 @@
 //! Port of `wgsl/bias.wesl`.
 
-use super::depth::dpsm_depth;
+use super::depth::{dpsm_depth, dpsm_depth_stored};
 use super::edge::dpsm_edge_terms;
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::dpsm_flip;
@@ -19,19 +19,23 @@ pub struct DpsmReceiver<T> {
     pub plane: Vec4<T>,
     /// |p|.
     pub distance: T,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    pub rounding: T,
 }
 
 /// How far rounding may turn and move a receiver's plane and a caster's against each other, 64 eps.
 pub const DPSM_RECEIVER_ROUNDING: f64 = 1.0 / (1u64 << 17) as f64;
 
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-pub const DPSM_BIAS_DISTANCE: f64 = 22.0 / (1u64 << 23) as f64;
+/// How far rounding may move a world position that vertices interpolate, for each unit of its largest
+/// coordinate: 16 eps.
+pub const DPSM_POSITION_ROUNDING: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
+pub const DPSM_BIAS_DISTANCE: f64 = 24.0 / (1u64 << 23) as f64;
 
 /// The same for each unit of near, 10 eps.
 pub const DPSM_BIAS_NEAR: f64 = 10.0 / (1u64 << 23) as f64;
-
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-pub const DPSM_BIAS_DEPTH: f64 = 1.0 / (1u64 << 22) as f64;
 
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 pub const DPSM_BIAS_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 24) as f64;
@@ -39,8 +43,14 @@ pub const DPSM_BIAS_DIAGONAL: f64 = 0x16a09e8 as f64 / (1u64 << 24) as f64;
 /// The square of the shortest normal that is one: 2^-100.
 pub const DPSM_BIAS_NORMAL: f64 = 1.0 / (1u128 << 100) as f64;
 
+/// How far a surface point that vertices interpolate may lie off its triangle, in world units, for
+/// its world position.
+pub fn dpsm_position_error<T: Float>(world: Vec3<T>) -> T {
+    T::lit(DPSM_POSITION_ROUNDING) * world.x.abs().max(world.y.abs()).max(world.z.abs())
+}
+
 /// The receiver at a light-space point with a normal of any length, of either side.
-pub fn dpsm_receiver<T: Float>(p: Vec3<T>, normal: Vec3<T>) -> DpsmReceiver<T> {
+pub fn dpsm_receiver<T: Float>(p: Vec3<T>, normal: Vec3<T>, error: T) -> DpsmReceiver<T> {
     let distance = p.length();
     let square = normal.dot(normal);
     let known = square >= T::lit(DPSM_BIAS_NORMAL);
@@ -49,7 +59,9 @@ pub fn dpsm_receiver<T: Float>(p: Vec3<T>, normal: Vec3<T>) -> DpsmReceiver<T> {
     let unit = along * (T::lit(1.0) / size);
     let height = select(distance, unit.dot(p), known);
     let turned = select(unit, -unit, height < T::lit(0.0));
-    DpsmReceiver { plane: turned.extend(height.abs()), distance }
+    let moved = (error / distance.max(T::lit(DPSM_SMALLEST))).min(T::lit(1.0));
+    let rounding = T::lit(DPSM_RECEIVER_ROUNDING) + moved;
+    DpsmReceiver { plane: turned.extend(height.abs()), distance, rounding }
 }
 
 /// The cosine of a receiver's incidence.
@@ -70,7 +82,7 @@ pub fn dpsm_receiver_distance<T: Float>(
     if facing <= T::lit(0.0) {
         return T::lit(DPSM_SMALLEST);
     }
-    let leaned = facing + T::lit(DPSM_RECEIVER_ROUNDING) * whole;
+    let leaned = facing + receiver.rounding * whole;
     (receiver.plane.w * (whole / leaned)).max(T::lit(DPSM_SMALLEST))
 }
 
@@ -78,7 +90,7 @@ pub fn dpsm_receiver_distance<T: Float>(
 pub fn dpsm_bias_slack<T: Float>(distance: T, light: DpsmLight<T>, quantum: T, tolerance: T) -> T {
     let spread =
         (tolerance + T::lit(DPSM_BIAS_DISTANCE)) * distance + T::lit(DPSM_BIAS_NEAR) * light.near;
-    quantum + T::lit(DPSM_BIAS_DEPTH) + spread / (light.far - light.near)
+    quantum + spread / (light.far - light.near)
 }
 
 /// The square of the chord on the unit sphere from a disk point to the farthest corner of the
@@ -99,6 +111,7 @@ pub fn dpsm_bias_plane<T: Float>(
     cosine: T,
     distance: T,
     chord_square: T,
+    rounding: T,
     light: DpsmLight<T>,
 ) -> T {
     let one = T::lit(1.0);
@@ -107,7 +120,7 @@ pub fn dpsm_bias_plane<T: Float>(
     let turn = (chord_square * (one - T::lit(0.25) * chord_square)).sqrt();
     // cos(a - psi) - cos a; the plane's nearest point, at a = 0, if it is within the window
     let steeper = (sine * turn - cosine * fall).max(T::lit(0.0));
-    let drop = select(steeper, one - cosine, cosine >= one - fall) + T::lit(DPSM_RECEIVER_ROUNDING);
+    let drop = select(steeper, one - cosine, cosine >= one - fall) + rounding;
     distance * (drop / (cosine + drop)) / (light.far - light.near)
 }
 
@@ -120,7 +133,8 @@ pub fn dpsm_bias_footprint<T: Float>(
     light: DpsmLight<T>,
 ) -> T {
     let chord_square = dpsm_bias_window(uv, texels, light);
-    dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light)
+    let cosine = dpsm_receiver_cosine(receiver);
+    dpsm_bias_plane(cosine, receiver.distance, chord_square, receiver.rounding, light)
 }
 
 /// The centre, on the disk, of the texel that holds a disk point.
@@ -180,7 +194,8 @@ pub fn dpsm_visibility_texel_centre<T: Float>(
     tolerance: T,
 ) -> T {
     let at = dpsm_lookup_texel_centre(p, receiver, light, quantum, tolerance);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth);
+    let reference = dpsm_depth_stored(at.depth, light.reversed);
+    let lit = maps.compare(at.coordinates, at.layer, reference);
     select(T::lit(0.0), lit, at.mapped)
 }
 
@@ -196,6 +211,7 @@ pub fn dpsm_visibility_footprint<T: Float>(
 ) -> T {
     let window = dpsm_bias_footprint(receiver, dpsm_project_own(p), texels, light);
     let at = dpsm_lookup_biased(p, window, light, quantum, tolerance);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth);
+    let reference = dpsm_depth_stored(at.depth, light.reversed);
+    let lit = maps.compare(at.coordinates, at.layer, reference);
     select(T::lit(0.0), lit, at.mapped)
 }

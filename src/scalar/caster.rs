@@ -1,6 +1,6 @@
 //! Port of `wgsl/caster.wesl`.
 
-use super::depth::{dpsm_depth, dpsm_within};
+use super::depth::{dpsm_depth, dpsm_depth_stored, dpsm_within};
 use super::float::{Float, Vec3, Vec4};
 use super::light::DpsmLight;
 use super::paraboloid::dpsm_project;
@@ -39,7 +39,7 @@ pub fn dpsm_caster_vertex<T: Float>(
     let half = T::lit(0.5);
     let l = p.length();
     let disk = dpsm_project(p) / (T::lit(1.0) + light.guard);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     let height = p.z - l * dpsm_caster_border(light.guard);
     DpsmCasterVertex {
         clip: Vec4::new(disk.x, disk.y, depth, T::lit(1.0)),
@@ -61,7 +61,7 @@ pub fn dpsm_caster_fragment<T: Float>(
     let l = p.length();
     let inside = p.z >= l * dpsm_caster_border(light.guard);
     DpsmCasterFragment {
-        depth: dpsm_depth(l, light.near, light.far) + bias,
+        depth: dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed),
         keep: inside && dpsm_within(l, light.near, light.far),
     }
 }

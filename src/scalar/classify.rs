@@ -58,6 +58,9 @@ pub const DPSM_CLASSIFY_FACING: f64 = 1.0 / (1u64 << 60) as f64;
 /// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
 pub const DPSM_CLASSIFY_SPREAD: f64 = (1u64 << 40) as f64;
 
+/// The least height of a steep triangle's plane, as a share of the farthest vertex's distance.
+pub const DPSM_CLASSIFY_EDGE_ON: f64 = 1.0 / 1024.0;
+
 /// True where every component is a number up to 2^62.
 pub fn dpsm_classify_usable<T: Float>(p: Vec3<T>) -> bool {
     [p.x, p.y, p.z].iter().all(|c| c.abs() <= T::lit(DPSM_CLASSIFY_LARGEST))
@@ -121,8 +124,10 @@ pub fn dpsm_classify<T: Float>(
         if error <= depth_tolerance {
             return DpsmClass { kind: select(DPSM_FLAT, DPSM_STRADDLING, both), hemispheres };
         }
-        // clear of the clipping spheres, at which interpolated distances would be cut
-        if !both && height > light.near && farthest < light.far {
+        // clear of the clipping spheres, at which interpolated distances would be cut, and not so
+        // edge-on that its plane runs off beside it
+        let clear = height > light.near.max(T::lit(DPSM_CLASSIFY_EDGE_ON) * farthest);
+        if !both && clear && farthest < light.far {
             return DpsmClass { kind: DPSM_STEEP, hemispheres };
         }
     }

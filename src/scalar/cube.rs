@@ -1,6 +1,6 @@
 //! Port of `wgsl/cube.wesl`.
 
-use super::bias::{DPSM_RECEIVER_ROUNDING, DpsmReceiver, dpsm_texel_centre};
+use super::bias::{DpsmReceiver, dpsm_texel_centre};
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::light::DpsmLight;
 use super::maps::Maps;
@@ -124,7 +124,7 @@ pub fn dpsm_cube_lookup_texel_centre<T: Float>(
     let direction = Vec3::new(centre.x, centre.y, T::lit(1.0));
     let l = direction.length();
     let facing = receiver.plane.xyz().dot(dpsm_cube_unview(direction, at.hemisphere));
-    let leaned = facing.max(zero) + T::lit(DPSM_RECEIVER_ROUNDING) * l;
+    let leaned = facing.max(zero) + receiver.rounding * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
     let there = (receiver.plane.w / leaned).min(light.far / l);
     let z = select(receiver.distance / l, there, facing > zero);
@@ -144,25 +144,14 @@ pub fn dpsm_cube_lookup_footprint<T: Float>(
     light: DpsmLight<T>,
     quantum: T,
 ) -> DpsmLookup<T> {
-    let normal = dpsm_cube_view(receiver.plane.xyz(), dpsm_cube_face(p));
+    let at = dpsm_cube_lookup(p, light);
+    let normal = dpsm_cube_view(receiver.plane.xyz(), at.hemisphere);
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x.abs() + normal.y.abs());
-    dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum)
-}
-
-/// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
-/// rises by so much from where the point is, less the slack.
-pub fn dpsm_cube_lookup_rising<T: Float>(
-    p: Vec3<T>,
-    height: T,
-    rise: T,
-    light: DpsmLight<T>,
-    quantum: T,
-) -> DpsmLookup<T> {
-    let at = dpsm_cube_lookup(p, light);
     let own = dpsm_cube_view(p, at.hemisphere).z.max(T::lit(DPSM_SMALLEST));
-    let rounding = T::lit(DPSM_RECEIVER_ROUNDING) * p.length();
-    let z = own * (height / (height + rise * own + rounding));
+    let height = receiver.plane.w;
+    let risen = height + rise * own + receiver.rounding * receiver.distance;
+    let z = own * (height / risen.max(T::lit(DPSM_SMALLEST)));
     let depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
     DpsmLookup { depth, ..at }
 }

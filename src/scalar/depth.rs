@@ -1,6 +1,6 @@
 //! Port of `wgsl/depth.wesl`.
 
-use super::float::Float;
+use super::float::{Float, Vec4, select};
 
 /// The stored depth of a radial distance l: (l - near) / (far - near).
 pub fn dpsm_depth<T: Float>(l: T, near: T, far: T) -> T {
@@ -10,6 +10,16 @@ pub fn dpsm_depth<T: Float>(l: T, near: T, far: T) -> T {
 /// The radial distance of a stored depth, the inverse of dpsm_depth.
 pub fn dpsm_distance<T: Float>(depth: T, near: T, far: T) -> T {
     near + depth * (far - near)
+}
+
+/// A depth as the maps store it, and a stored one as the depth that it is.
+pub fn dpsm_depth_stored<T: Float>(depth: T, reversed: u32) -> T {
+    select(depth, T::lit(1.0) - depth, reversed == 1)
+}
+
+/// dpsm_depth_stored of four depths.
+pub fn dpsm_depth_stored_four<T: Float>(depths: Vec4<T>, reversed: u32) -> Vec4<T> {
+    select(depths, Vec4::splat(T::lit(1.0)) - depths, reversed == 1)
 }
 
 /// True where a radial distance lies between the clipping spheres, both included.

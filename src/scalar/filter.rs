@@ -4,6 +4,7 @@ use super::bias::{
     DPSM_BIAS_DISTANCE, DpsmReceiver, dpsm_bias_footprint, dpsm_bias_slack, dpsm_bias_window,
     dpsm_receiver_distance,
 };
+use super::depth::dpsm_depth_stored;
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::{DPSM_BACK, dpsm_hemisphere};
 use super::kernel::{
@@ -117,7 +118,7 @@ pub fn dpsm_filter_lookup<T: Float>(
         } else {
             // within the window the plane is no nearer than its height over the chord
             let chord = dpsm_bias_window(uv, T::lit(1.0), light).sqrt();
-            let plane = reader.receiver.plane.w / chord.max(T::lit(DPSM_SMALLEST));
+            let plane = reader.receiver.plane.w / (chord + reader.receiver.rounding);
             depth = depth.min(plane * reader.depth.x - reader.depth.y);
         }
     }
@@ -139,7 +140,8 @@ pub fn dpsm_filter_tap<T: Float>(
     light: DpsmLight<T>,
 ) -> T {
     let at = dpsm_filter_lookup(reader, tap, light);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth);
+    let reference = dpsm_depth_stored(at.depth, light.reversed);
+    let lit = maps.compare(at.coordinates, at.layer, reference);
     select(T::lit(0.0), lit, at.mapped)
 }
 
@@ -168,12 +170,13 @@ pub fn dpsm_filter_pcf<T: Float>(
     let extent = select(Vec2::splat(T::lit(1.0)), light.rectangle.zw(), atlas);
     let texel = extent / light.size;
     let middle = T::lit(0.5) * T::lit(side.into()) - T::lit(0.5);
+    let reference = dpsm_depth_stored(at.depth - bias, light.reversed);
     let mut sum = T::lit(0.0);
     for index in 0..side * side {
         let [x, y] = [index % side, index / side].map(|i| T::lit(i.into()));
         let offset = Vec2::new(x, y) - Vec2::splat(middle);
         let st = at.coordinates + offset * texel;
-        sum = sum + maps.compare(st, at.layer, at.depth - bias);
+        sum = sum + maps.compare(st, at.layer, reference);
     }
     select(T::lit(0.0), sum / T::lit((side * side).into()), at.mapped)
 }
@@ -333,12 +336,14 @@ pub fn dpsm_filter_read<T: Float>(
     at: DpsmFour<T>,
     layers: [u32; 2],
     mapped: [bool; 2],
+    reversed: u32,
 ) -> Vec4<T> {
     let (s, t) = (at.s.to_array(), at.t.to_array());
     let read = |i: usize| {
         let map = usize::from(at.crossed[i]);
         let stored = maps.sample(Vec2::new(s[i], t[i]), layers[map]);
-        select(T::lit(DPSM_FILTER_UNMAPPED), stored, mapped[map])
+        let depth = dpsm_depth_stored(stored, reversed);
+        select(T::lit(DPSM_FILTER_UNMAPPED), depth, mapped[map])
     };
     Vec4::from_array(std::array::from_fn(read))
 }
@@ -407,7 +412,7 @@ pub fn dpsm_filter_sum<T: Float>(
         let ring = share.sqrt();
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_filter_read(maps, four, layers, mapped);
+        let stored = dpsm_filter_read(maps, four, layers, mapped, light.reversed);
         sum = sum + dpsm_filter_even(disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;
@@ -485,7 +490,7 @@ pub fn dpsm_filter_disk<T: Float>(
         let ring = dpsm_filter_dense(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_filter_read(maps, four, layers, mapped);
+        let stored = dpsm_filter_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_filter_contact(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;

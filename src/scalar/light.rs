@@ -14,6 +14,12 @@ pub const DPSM_HEMISPHERICAL: u32 = 1;
 /// An omnidirectional light: two maps.
 pub const DPSM_OMNIDIRECTIONAL: u32 = 2;
 
+/// The maps store depths as they are, compared with less-equal.
+pub const DPSM_FORWARD: u32 = 0;
+
+/// The maps store 1 less the depth, compared with greater-equal.
+pub const DPSM_REVERSED: u32 = 1;
+
 /// A point light with paraboloid maps; at f32 its bytes are the shader's struct.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,8 +48,8 @@ pub struct DpsmLight<T> {
     pub placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     pub hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    pub padding: u32,
+    /// [`DPSM_FORWARD`] or [`DPSM_REVERSED`]: what the maps store of a depth.
+    pub reversed: u32,
 }
 
 impl DpsmLight<f32> {
@@ -62,7 +68,7 @@ impl DpsmLight<f32> {
             first_layer: self.first_layer,
             placement: self.placement,
             hemispheres: self.hemispheres,
-            padding: self.padding,
+            reversed: self.reversed,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Port of `wgsl/lights.wesl`.
 
-use super::bias::dpsm_receiver;
+use super::bias::{dpsm_position_error, dpsm_receiver};
 use super::filter::{DpsmTaps, dpsm_filter_disk};
 use super::float::{Float, Vec2, Vec3, Vec4};
 use super::hemisphere::dpsm_to_light;
@@ -26,7 +26,7 @@ pub fn dpsm_lights_visibility<T: Float>(
     rotation: Vec2<T>,
 ) -> T {
     let p = dpsm_to_light(world, light);
-    let receiver = dpsm_receiver(p, dpsm_lights_turn(normal, light));
+    let receiver = dpsm_receiver(p, dpsm_lights_turn(normal, light), dpsm_position_error(world));
     if radius <= T::lit(0.0) {
         return dpsm_visibility_plane(maps, p, receiver, light, taps.quantum, taps.tolerance);
     }

@@ -5,7 +5,8 @@ use super::float::{Float, Vec2, Vec4};
 /// A texture with a comparison sampler, as the ports of sampling functions see it.
 pub trait Maps<T: Float> {
     /// textureSampleCompareLevel: the share of the sampled texels whose stored depth is not less
-    /// than `reference`, at texture coordinates `st` of the layer.
+    /// than `reference`, or not greater where the sampler is so, at texture coordinates `st` of the
+    /// layer.
     fn compare(&self, st: Vec2<T>, layer: u32, reference: T) -> T;
 
     /// textureSampleLevel without a comparison: the depth stored in the texel that holds texture
@@ -51,13 +52,27 @@ pub struct DepthMaps {
     pub depths: Vec<f32>,
     /// Sampling of `compare`.
     pub sampling: Sampling,
+    /// Whether 1 less the depth is stored, and `compare` is greater-equal.
+    pub reversed: bool,
 }
 
 impl DepthMaps {
     /// Maps in which nothing is stored: every depth is 1.
     pub fn empty(size: u32, layers: u32, sampling: Sampling) -> Self {
         let texels = layers as usize * size as usize * size as usize;
-        Self { size, layers, depths: vec![1.0; texels], sampling }
+        Self { size, layers, depths: vec![1.0; texels], sampling, reversed: false }
+    }
+
+    /// The same maps as a reversed light has them, which stores 1 less each depth.
+    pub fn reverse(mut self) -> Self {
+        self.depths.iter_mut().for_each(|depth| *depth = 1.0 - *depth);
+        Self { reversed: !self.reversed, ..self }
+    }
+
+    /// The depth that a texel stands for, by its index in `depths`: 1 where it is empty.
+    pub fn depth(&self, index: usize) -> f32 {
+        let stored = self.depths[index];
+        if self.reversed { 1.0 - stored } else { stored }
     }
 
     /// The index of a texel in `depths`, coordinates clamped to the map.
@@ -79,7 +94,8 @@ impl<T: Float> Maps<T> for DepthMaps {
     fn compare(&self, st: Vec2<T>, layer: u32, reference: T) -> T {
         let lit = |x: i64, y: i64| {
             let stored = T::lit(f64::from(self.depths[self.index(x, y, layer)]));
-            T::lit(f64::from(u8::from(reference <= stored)))
+            let lit = if self.reversed { reference >= stored } else { reference <= stored };
+            T::lit(f64::from(u8::from(lit)))
         };
         let size = f64::from(self.size);
         let (x, y) = (st.x.value() * size, st.y.value() * size);

@@ -78,7 +78,7 @@ pub fn dpsm_pcss_search<T: Float>(
         let ring = dpsm_pcss_ring(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_filter_read(maps, four, layers, mapped);
+        let stored = dpsm_filter_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_pcss_found(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;

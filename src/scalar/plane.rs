@@ -1,7 +1,7 @@
 //! Port of `wgsl/plane.wesl`.
 
-use super::bias::{DPSM_BIAS_DEPTH, DpsmReceiver, dpsm_bias_slack};
-use super::depth::dpsm_receiver_depth;
+use super::bias::{DPSM_RECEIVER_ROUNDING, DpsmReceiver, dpsm_bias_slack};
+use super::depth::{dpsm_depth_stored, dpsm_depth_stored_four, dpsm_receiver_depth};
 use super::float::{Float, Vec2, Vec3, Vec4, select};
 use super::hemisphere::{dpsm_flip, dpsm_hemisphere};
 use super::light::{DpsmLight, dpsm_light_coordinates, dpsm_light_layer};
@@ -20,11 +20,11 @@ pub const DPSM_PLANE_DARK: f64 = 0.5;
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 pub const DPSM_PLANE_OWN: f64 = 0.3;
 
-/// How far rounding may turn and move two planes against each other: 128 eps.
-pub const DPSM_PLANE_ROUNDING: f64 = 1.0 / 65536.0;
+/// How far rounding may turn and move two planes against each other beyond the receiver's own: 64 eps.
+pub const DPSM_PLANE_ROUNDING: f64 = 1.0 / (1u64 << 17) as f64;
 
-/// What a stored distance is to be taken for: 32 eps more.
-pub const DPSM_PLANE_REACH: f64 = 1.0 + 1.0 / (1u64 << 18) as f64;
+/// What a stored distance is to be taken for: 36 eps more.
+pub const DPSM_PLANE_REACH: f64 = 1.0 + 36.0 / (1u64 << 23) as f64;
 
 /// A receiver in its map, moved along its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ pub fn dpsm_plane<T: Float>(
     let inside = (light.far * (inverse * sum)).min(one);
     let grown = tolerance + T::lit(DPSM_PLANE_REACH);
     let range = one / (grown * (light.far - light.near));
-    let rounding = T::lit(DPSM_PLANE_ROUNDING);
+    let rounding = receiver.rounding + T::lit(DPSM_PLANE_ROUNDING);
     DpsmPlane {
         uv: uv - lean * (moved * width),
         lean,
@@ -84,7 +84,7 @@ pub fn dpsm_plane<T: Float>(
         pitch,
         height: receiver.plane.w * inside * range,
         distance: l * inside * range * (one - moved * pitch * cosine),
-        near: light.near * grown * range + (quantum + T::lit(DPSM_BIAS_DEPTH)),
+        near: light.near * grown * range + quantum,
         hemisphere,
     }
 }
@@ -104,7 +104,8 @@ pub fn dpsm_visibility_plane<T: Float>(
     let corner = (four.xy() + Vec2::splat(T::lit(1.0))) / light.size;
     let st = dpsm_light_coordinates(light, at.hemisphere, corner);
     let stored = maps.gather(st, dpsm_light_layer(light, at.hemisphere));
-    select(T::lit(0.0), dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres)
+    let depths = dpsm_depth_stored_four(stored, light.reversed);
+    select(T::lit(0.0), dpsm_plane_share(at, four, depths), at.hemisphere < light.hemispheres)
 }
 
 /// The four texels around a receiver: the first one's place, and how far the receiver is from it.
@@ -152,9 +153,11 @@ pub fn dpsm_visibility_normal<T: Float>(
     let layer = dpsm_light_layer(light, at.hemisphere);
     let st = dpsm_disk_to_texture(at.uv, light.guard);
     let place = dpsm_light_coordinates(light, at.hemisphere, st);
-    let depths = dpsm_plane_depths(at, receiver.distance, light, quantum, tolerance);
-    let lit = maps.compare(place, layer, depths.x);
-    let dark = T::lit(1.0) - maps.compare(place, layer, depths.y);
+    let depths = dpsm_plane_depths(at, receiver, light, quantum, tolerance);
+    let first = dpsm_depth_stored(depths.x, light.reversed);
+    let second = dpsm_depth_stored(depths.y, light.reversed);
+    let lit = maps.compare(place, layer, first);
+    let dark = T::lit(1.0) - maps.compare(place, layer, second);
     let decided = lit + dark;
     let share = if decided > T::lit(0.0) { lit / decided } else { T::lit(0.0) };
     select(T::lit(0.0), share, at.hemisphere < light.hemispheres)
@@ -164,14 +167,17 @@ pub fn dpsm_visibility_normal<T: Float>(
 /// second is in shadow.
 pub fn dpsm_plane_depths<T: Float>(
     at: DpsmPlane<T>,
-    distance: T,
+    receiver: DpsmReceiver<T>,
     light: DpsmLight<T>,
     quantum: T,
     tolerance: T,
 ) -> Vec2<T> {
     let sine = at.lean.length();
+    let distance = receiver.distance;
     let texel = at.pitch * distance;
-    let own = distance - texel * (T::lit(DPSM_PLANE_DIAGONAL) * sine * at.cosine);
+    let off = receiver.rounding - T::lit(DPSM_RECEIVER_ROUNDING);
+    let near = distance - distance * (off / (at.cosine + off).max(T::lit(DPSM_SMALLEST)));
+    let own = near - texel * (T::lit(DPSM_PLANE_DIAGONAL) * sine * at.cosine);
     let depth = |less: T| dpsm_receiver_depth(own - texel * less, light.near, light.far);
     let slack = dpsm_bias_slack(distance, light, quantum, tolerance);
     let [lit, dark] = [depth(T::lit(DPSM_PLANE_OWN)), depth(T::lit(1.0))];

@@ -129,7 +129,7 @@ flat! {
     Vec4 { x, y, z, w }
     DpsmLight {
         position, near, right, far, up, guard, forward, size, rectangle,
-        first_layer, placement, hemispheres, padding
+        first_layer, placement, hemispheres, reversed
     }
     DpsmCasterVertex { clip, hemisphere_value }
     DpsmCasterFragment { depth, keep }
@@ -139,7 +139,7 @@ flat! {
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
     DpsmCorner { position, normal }
-    DpsmReceiver { plane, distance }
+    DpsmReceiver { plane, distance, rounding }
     DpsmKernel { axis, reach, hemisphere }
     DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
     DpsmTap { uv, hemisphere }
@@ -256,7 +256,10 @@ ports! {
         dpsm_texel_solid_angle, dpsm_disk_to_texture, dpsm_texture_to_disk,
     }
     light { dpsm_light_layer, dpsm_light_coordinates }
-    depth { dpsm_depth, dpsm_distance, dpsm_within, dpsm_receiver_depth }
+    depth {
+        dpsm_depth, dpsm_distance, dpsm_depth_stored, dpsm_depth_stored_four, dpsm_within,
+        dpsm_receiver_depth,
+    }
     caster {
         dpsm_caster_border, dpsm_caster_vertex, dpsm_caster_keep, dpsm_caster_fragment,
     }
@@ -279,7 +282,7 @@ ports! {
     }
     visibility { dpsm_lookup, dpsm_receiver_vertex }
     bias {
-        dpsm_receiver, dpsm_receiver_cosine, dpsm_receiver_distance, dpsm_bias_slack,
+        dpsm_position_error, dpsm_receiver, dpsm_receiver_cosine, dpsm_receiver_distance, dpsm_bias_slack,
         dpsm_bias_window, dpsm_bias_plane, dpsm_bias_footprint, dpsm_texel_centre,
         dpsm_lookup_texel_centre, dpsm_lookup_biased,
     }
@@ -287,7 +290,7 @@ ports! {
     cube {
         dpsm_cube_face, dpsm_cube_view, dpsm_cube_unview, dpsm_cube_guard, dpsm_cube_vertex,
         dpsm_cube_depth, dpsm_cube_receiver_depth, dpsm_cube_lookup, dpsm_cube_slack,
-        dpsm_cube_lookup_texel_centre, dpsm_cube_lookup_footprint, dpsm_cube_lookup_rising,
+        dpsm_cube_lookup_texel_centre, dpsm_cube_lookup_footprint,
         dpsm_cube_direction, dpsm_cube_distance, dpsm_cube_outside,
     }
     kernel {
@@ -303,5 +306,8 @@ ports! {
     }
     pcss { dpsm_pcss_tangent, dpsm_pcss_ring, dpsm_pcss_found, dpsm_pcss_width }
     lights { dpsm_lights_turn }
-    shade { dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight, dpsm_shadow_terminator }
+    shade {
+        dpsm_shade, dpsm_blend, dpsm_lambert, dpsm_highlight, dpsm_spot, dpsm_range,
+        dpsm_shadow_terminator,
+    }
 }

@@ -1,6 +1,7 @@
 //! Port of `wgsl/raw.wesl`.
 
 use super::bias::DpsmReceiver;
+use super::depth::{dpsm_depth_stored, dpsm_depth_stored_four};
 use super::filter::{
     DPSM_FILTER_SHIFT, DPSM_FILTER_SMALLEST, DPSM_FILTER_UNMAPPED, DPSM_FILTER_WIDEST,
     DPSM_TAP_HARD, DpsmContact, DpsmDisk, DpsmFour, DpsmReader, DpsmTaps, dpsm_filter_cone,
@@ -28,10 +29,18 @@ pub fn dpsm_raw_load<T: Float>(maps: &impl Maps<T>, texel: Vec2<T>, layer: u32) 
 }
 
 /// 1 where the texel at the lookup's coordinates stores no less than its depth, else 0.
-pub fn dpsm_raw_compare<T: Float>(maps: &impl Maps<T>, at: DpsmLookup<T>, kind: u32) -> T {
+pub fn dpsm_raw_compare<T: Float>(
+    maps: &impl Maps<T>,
+    at: DpsmLookup<T>,
+    kind: u32,
+    reversed: u32,
+) -> T {
     let [zero, half, one] = [0.0, 0.5, 1.0].map(T::lit);
     let place = at.coordinates * maps.size();
-    let lit = |texel: Vec2<T>| select(zero, one, at.depth <= dpsm_raw_load(maps, texel, at.layer));
+    let lit = |texel: Vec2<T>| {
+        let held = dpsm_raw_load(maps, texel, at.layer);
+        select(zero, one, at.depth <= dpsm_depth_stored(held, reversed))
+    };
     if kind == DPSM_TAP_HARD {
         return lit(place.floor());
     }
@@ -55,7 +64,7 @@ pub fn dpsm_raw_tap<T: Float>(
     light: DpsmLight<T>,
 ) -> T {
     let at = dpsm_filter_lookup(reader, tap, light);
-    select(T::lit(0.0), dpsm_raw_compare(maps, at, reader.kind), at.mapped)
+    select(T::lit(0.0), dpsm_raw_compare(maps, at, reader.kind, light.reversed), at.mapped)
 }
 
 /// dpsm_filter_hardware by loads.
@@ -90,7 +99,7 @@ pub fn dpsm_raw_pcf<T: Float>(
         let offset = Vec2::new(x, y) - Vec2::splat(middle);
         let coordinates = own.coordinates + offset * texel;
         let at = DpsmLookup { coordinates, depth: own.depth - bias, ..own };
-        sum = sum + dpsm_raw_compare(maps, at, kind);
+        sum = sum + dpsm_raw_compare(maps, at, kind, light.reversed);
     }
     select(T::lit(0.0), sum / T::lit((side * side).into()), own.mapped)
 }
@@ -114,7 +123,8 @@ pub fn dpsm_raw_plane<T: Float>(
         dpsm_raw_load(maps, first + Vec2::new(T::lit(right), T::lit(down)), layer)
     };
     let stored = Vec4::new(load(0.0, 1.0), load(1.0, 1.0), load(1.0, 0.0), load(0.0, 0.0));
-    select(T::lit(0.0), dpsm_plane_share(at, four, stored), at.hemisphere < light.hemispheres)
+    let depths = dpsm_depth_stored_four(stored, light.reversed);
+    select(T::lit(0.0), dpsm_plane_share(at, four, depths), at.hemisphere < light.hemispheres)
 }
 
 /// dpsm_filter_read by loads.
@@ -123,12 +133,14 @@ pub fn dpsm_raw_read<T: Float>(
     at: DpsmFour<T>,
     layers: [u32; 2],
     mapped: [bool; 2],
+    reversed: u32,
 ) -> Vec4<T> {
     let (s, t, size) = (at.s.to_array(), at.t.to_array(), maps.size());
     let read = |i: usize| {
         let map = usize::from(at.crossed[i]);
         let stored = dpsm_raw_load(maps, (Vec2::new(s[i], t[i]) * size).floor(), layers[map]);
-        select(T::lit(DPSM_FILTER_UNMAPPED), stored, mapped[map])
+        let depth = dpsm_depth_stored(stored, reversed);
+        select(T::lit(DPSM_FILTER_UNMAPPED), depth, mapped[map])
     };
     Vec4::from_array(std::array::from_fn(read))
 }
@@ -153,7 +165,7 @@ pub fn dpsm_raw_sum<T: Float>(
         let ring = share.sqrt();
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         sum = sum + dpsm_filter_even(disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;
@@ -190,7 +202,7 @@ pub fn dpsm_raw_disk<T: Float>(
         let ring = dpsm_filter_dense(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_filter_contact(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;
@@ -262,7 +274,7 @@ pub fn dpsm_raw_pcss_search<T: Float>(
         let ring = dpsm_pcss_ring(share);
         let offset = direction * ring;
         let four = dpsm_filter_places(disk, own, beyond, offset);
-        let stored = dpsm_raw_read(maps, four, layers, mapped);
+        let stored = dpsm_raw_read(maps, four, layers, mapped, light.reversed);
         found = dpsm_pcss_found(found, disk, offset, ring, stored);
         direction = dpsm_kernel_next(direction);
         share = share + per;

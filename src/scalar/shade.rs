@@ -43,6 +43,20 @@ pub fn dpsm_highlight<T: Float>(normal: Vec3<T>, to_light: Vec3<T>, to_eye: Vec3
     sixteenth * sixteenth
 }
 
+/// How much of a spot light goes in a direction.
+pub fn dpsm_spot<T: Float>(cosine: T, inner: T, outer: T) -> T {
+    let wide = (inner - outer).max(T::lit(0.001));
+    let share = ((cosine - outer) / wide).clamp(T::lit(0.0), T::lit(1.0));
+    share * share
+}
+
+/// What a light's range leaves of it at a distance.
+pub fn dpsm_range<T: Float>(distance: T, range: T) -> T {
+    let share = (distance / range).min(T::lit(1.0));
+    let square = share * share;
+    T::lit(1.0) - square * square
+}
+
 /// Where the shadow test of a smoothly shaded triangle should be made: on the curved surface that
 /// the corners' normals suggest.
 pub fn dpsm_shadow_terminator<T: Float>(

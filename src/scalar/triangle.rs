@@ -1,7 +1,7 @@
 //! Port of `wgsl/triangle.wesl`.
 
 use super::caster::DpsmCasterFragment;
-use super::depth::{dpsm_depth, dpsm_within};
+use super::depth::{dpsm_depth, dpsm_depth_stored, dpsm_within};
 use super::edge::{
     DPSM_EDGE_NEAREST, DPSM_EDGE_ROUNDING, dpsm_edge_largest, dpsm_edge_line, dpsm_edge_normal,
     dpsm_edge_sagitta, dpsm_edge_terms, dpsm_edge_unit,
@@ -187,7 +187,7 @@ pub fn dpsm_triangle_fragment<T: Float>(
     }
     let stored = uv.dot(uv) <= (one + light.guard) * (one + light.guard);
     let keep = stored && dpsm_triangle_covers(triangle, uv);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     DpsmCasterFragment { depth, keep: keep && dpsm_within(l, light.near, light.far) }
 }
 

@@ -1,6 +1,6 @@
 //! Port of `wgsl/visibility.wesl`.
 
-use super::depth::{dpsm_depth, dpsm_receiver_depth};
+use super::depth::{dpsm_depth, dpsm_depth_stored, dpsm_receiver_depth};
 use super::float::{Float, Vec2, Vec3, select};
 use super::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip, dpsm_hemisphere};
 use super::light::{DpsmLight, dpsm_light_coordinates, dpsm_light_layer};
@@ -57,7 +57,8 @@ pub fn dpsm_visibility<T: Float>(
     bias: T,
 ) -> T {
     let at = dpsm_lookup(p, light);
-    let lit = maps.compare(at.coordinates, at.layer, at.depth - bias);
+    let reference = dpsm_depth_stored(at.depth - bias, light.reversed);
+    let lit = maps.compare(at.coordinates, at.layer, reference);
     select(T::lit(0.0), lit, at.mapped)
 }
 
@@ -85,7 +86,8 @@ pub fn dpsm_visibility_vertex<T: Float>(
     let hemisphere = select(DPSM_BACK, DPSM_FRONT, at.hemisphere_value >= T::lit(0.5));
     let own_map = select(at.back, at.front, hemisphere == DPSM_FRONT);
     let st = dpsm_light_coordinates(light, hemisphere, own_map);
-    let own = at.depth.clamp(T::lit(0.0), T::lit(1.0)) - bias;
+    let inside = at.depth.clamp(T::lit(0.0), T::lit(1.0));
+    let own = dpsm_depth_stored(inside - bias, light.reversed);
     let lit = maps.compare(st, dpsm_light_layer(light, hemisphere), own);
     select(T::lit(0.0), lit, hemisphere < light.hemispheres)
 }

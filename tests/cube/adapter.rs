@@ -18,7 +18,7 @@ fn adapter_agrees_with_the_port_and_a_texture_cube_samples_alike() {
     let mut maps = DepthMaps::empty(size, 6, Sampling::Nearest);
     maps.depths.fill_with(|| rng.f32());
     let texture = Texels::new(&device).unwrap().upload(&device, &maps, Format::D32).unwrap();
-    let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let sampler = comparison_sampler(&device, Sampling::Nearest, false).unwrap();
     let point = point_sampler(&device).unwrap();
     let view = |dimension| {
         texture.create_view(&wgpu::TextureViewDescriptor {

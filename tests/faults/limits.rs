@@ -123,7 +123,7 @@ fn stored_maps_above_a_lowered_limit_are_named() {
     let Some((device, _alone)) = adapter() else { return };
     let adapter = wgpu_adapter(&device);
     let (depths, sampling) = (vec![0.5; 64 * 64], Sampling::Nearest);
-    let maps = DepthMaps { size: 64, layers: 1, depths, sampling };
+    let maps = DepthMaps { size: 64, layers: 1, depths, sampling, reversed: false };
     for (name, lower) in BYTES {
         let mut limits = adapter.limits();
         lower(&mut limits, 1024);

@@ -127,7 +127,13 @@ fn device_that_is_lost_stays_lost_for_all_its_uses() {
     lost(device.evaluate::<_, f32>("dpsm_depth", &[[1.0_f32, 0.1, 10.0]]).map(drop), "evaluate");
     lost(gpu::render(&device, &frame(Method::Hybrid)).map(drop), "render");
     lost(gpu::make_maps(&device, &frame(Method::Hybrid)).map(drop), "make_maps");
-    let maps = DepthMaps { size: 2, layers: 1, depths: vec![0.5; 4], sampling: Sampling::Nearest };
+    let maps = DepthMaps {
+        size: 2,
+        layers: 1,
+        depths: vec![0.5; 4],
+        sampling: Sampling::Nearest,
+        reversed: false,
+    };
     let upload = |texels: Texels| texels.upload(&device, &maps, Format::D32);
     lost(Texels::new(&device).and_then(upload).map(drop), "upload");
 }

@@ -79,14 +79,14 @@ fn filters_agree_with_their_ports_on_the_adapter() {
             dimension: Some(wgpu::TextureViewDimension::D2Array),
             ..Default::default()
         });
-        let sampler = comparison_sampler(&device, sampling).unwrap();
+        let sampler = comparison_sampler(&device, sampling, false).unwrap();
         let point = point_sampler(&device).unwrap();
         let resources = Resources { texture: &view, sampler: &sampler, point: &point };
         let taps = DpsmTaps { kind, ..narrow_taps(hard(COUNT)) };
         let given: Vec<(Vec3<f32>, DpsmReceiver<f32>, f32)> = (0..RECORDS)
             .map(|_| {
                 let p = unit(&mut rng) * uniform(&mut rng, 0.5, 19.0);
-                (p, dpsm_receiver(p, unit(&mut rng)), uniform(&mut rng, 0.0, 0.3))
+                (p, dpsm_receiver(p, unit(&mut rng), 0.0), uniform(&mut rng, 0.0, 0.3))
             })
             .collect();
         // a 2 x 2 comparison's weights have at least 8 bits on every adapter: 1/256 each way
@@ -205,7 +205,7 @@ fn loads_agree_with_their_ports_on_the_adapter() {
         texture.size(),
     );
     let view = texture.create_view(&Default::default());
-    let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let sampler = comparison_sampler(&device, Sampling::Nearest, false).unwrap();
     let point = point_sampler(&device).unwrap();
     let resources = Resources { texture: &view, sampler: &sampler, point: &point };
     let exact = device.info.name.contains("llvmpipe");
@@ -214,7 +214,7 @@ fn loads_agree_with_their_ports_on_the_adapter() {
         let given: Vec<(Vec3<f32>, DpsmReceiver<f32>)> = (0..RECORDS)
             .map(|_| {
                 let p = unit(&mut rng) * uniform(&mut rng, 0.5, 19.0);
-                (p, dpsm_receiver(p, unit(&mut rng)))
+                (p, dpsm_receiver(p, unit(&mut rng), 0.0))
             })
             .collect();
         let first: Vec2<f32> = first();
@@ -266,7 +266,7 @@ fn four_lights_by_value_agree_with_their_port() {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
     });
-    let sampler = comparison_sampler(&device, Sampling::Nearest).unwrap();
+    let sampler = comparison_sampler(&device, Sampling::Nearest, false).unwrap();
     let point = point_sampler(&device).unwrap();
     let resources = Resources { texture: &view, sampler: &sampler, point: &point };
     let of = |i: u32| DpsmLight { first_layer: 2 * i, ..narrow(light(32)) };

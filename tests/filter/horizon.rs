@@ -26,7 +26,7 @@ fn grazing_receivers_behind_a_wall_all_around_are_in_shadow() {
         // 89.4 degrees: half of a kernel of 5 degrees is beyond the plane's horizon
         let across = p.cross(unit(&mut rng));
         let normal = across / across.length() + p * (0.01 / 5.0);
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = dpsm_receiver(p, normal, 0.0);
         let taps = narrow_taps(hard(16));
         let lit = dpsm_filter_disk(&maps, p, receiver, 0.087, light, taps, first());
         assert_eq!(lit, 0.0, "{p:?}, {normal:?}");
@@ -43,7 +43,7 @@ fn taps_beyond_the_horizon_compare_the_receivers_own_distance() {
         let taps = DpsmTaps { kind, ..narrow_taps(hard(1)) };
         for _ in 0..1000 {
             let p = unit(&mut rng) * 5.0;
-            let receiver = dpsm_receiver(p, p);
+            let receiver = dpsm_receiver(p, p, 0.0);
             let reader = dpsm_filter_reader(receiver, light, taps);
             let tap = DpsmTap { uv: dpsm_project_own(-p), hemisphere: dpsm_hemisphere(-p) };
             let at = dpsm_filter_lookup(reader, tap, light);
@@ -59,7 +59,7 @@ fn taps_beyond_the_horizon_compare_the_receivers_own_distance() {
 fn taps_at_the_maps_border_compare_with_the_texel_that_is_read() {
     let light = narrow(light(64));
     let bare = dpsm::scalar::light::DpsmLight { guard: 0.0, ..light };
-    let receiver = dpsm_receiver(Vec3::new(3.0_f32, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0));
+    let receiver = dpsm_receiver(Vec3::new(3.0_f32, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), 0.0);
     let reader = dpsm_filter_reader(receiver, bare, narrow_taps(hard(1)));
     let tap = DpsmTap { uv: Vec2::new(1.0, 0.0), hemisphere: 0 };
     let at = dpsm_filter_lookup(reader, tap, bare);

@@ -51,7 +51,7 @@ fn lit_plane_is_lit_at_any_incidence_with_any_kernel() {
             // the f32 port: its rounding is what the slack is for
             let wide = support::to_light(light, d / (along * d.length()));
             let p = wide.narrow();
-            let receiver = dpsm_receiver(p, support::to_light(light, normal).narrow());
+            let receiver = dpsm_receiver(p, support::to_light(light, normal).narrow(), 0.0);
             let taps = DpsmTaps { kind, ..narrow_taps(hard(16)) };
             let light = narrow(light);
             let lit = dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first());
@@ -84,7 +84,7 @@ fn guard_band_keeps_taps_on_the_rim_clear_of_what_is_not_stored() {
         for i in 0..10_000 {
             let (sin, cos) = (f64::from(i) * 6.2832e-4).sin_cos();
             let p = Vec3::new(cos, sin, 0.0);
-            let receiver = dpsm_receiver(p, p);
+            let receiver = dpsm_receiver(p, p, 0.0);
             let taps = DpsmTaps { kind, ..hard(16) };
             darkest = darkest.min(dpsm_filter_hardware(&maps, p, receiver, light, taps));
             let disk = dpsm_filter_disk(&maps, p, receiver, 0.1, light, taps, first());
@@ -119,7 +119,7 @@ fn hemispherical_light_darkens_taps_beyond_its_rim_and_no_others() {
         for step in -20..=20 {
             let off: f64 = f64::from(step) * 0.01;
             let p = Vec3::new(0.6 * off.cos(), 0.8 * off.cos(), off.sin());
-            let receiver = dpsm_receiver(p, p);
+            let receiver = dpsm_receiver(p, p, 0.0);
             let lit = dpsm_filter_disk(&maps, p, receiver, tangent, light, taps, first());
             let old = dpsm_filter_reproject(&maps, p, tangent, receiver, light, taps, first());
             if off < -tangent.atan() {
@@ -145,7 +145,7 @@ fn hardware_is_the_footprint_test_or_the_texel_centre_one() {
             let light = light(64);
             let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.1, 19.0));
             // facing the light its own distance is the plane's, up to the taps' curvature
-            let receiver = dpsm_receiver(p, p);
+            let receiver = dpsm_receiver(p, p, 0.0);
             let taps = DpsmTaps { kind, ..hard(1) };
             let ours = dpsm_filter_hardware(&maps, p, receiver, light, taps);
             let own = DpsmTap {
@@ -193,7 +193,7 @@ fn loads_give_what_the_comparison_sampler_gives() {
         let light = light(64);
         for _ in 0..2_000 {
             let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.5, 15.0));
-            let receiver = dpsm_receiver(p, unit(&mut rng).widen());
+            let receiver = dpsm_receiver(p, unit(&mut rng).widen(), 0.0);
             let (taps, tangent) = (DpsmTaps { kind, ..hard(16) }, 0.1);
             let kernel = dpsm_kernel(p, tangent);
             let pairs = [
@@ -251,7 +251,7 @@ fn atlas_filters_like_layers() {
         DpsmLight { placement: DPSM_ATLAS, rectangle: Vec4::new(0.0, 0.0, 0.5, 0.5), ..layers };
     for _ in 0..5_000 {
         let p = unit(&mut rng).widen() * f64::from(uniform(&mut rng, 0.5, 15.0));
-        let receiver = dpsm_receiver(p, unit(&mut rng).widen());
+        let receiver = dpsm_receiver(p, unit(&mut rng).widen(), 0.0);
         let value =
             |maps, light| dpsm_filter_disk(maps, p, receiver, 0.1, light, hard(16), first());
         assert_eq!(value(&two, layers), value(&one, atlas));
@@ -289,7 +289,7 @@ fn four_lights_read_their_own_layers() {
             // one light by hand, through light space
             let light = lights[1];
             let p = support::to_light(light, world - light.position);
-            let receiver = dpsm_receiver(p, support::to_light(light, normal));
+            let receiver = dpsm_receiver(p, support::to_light(light, normal), 0.0);
             if radius > 0.0 {
                 let tangent = radius / p.length();
                 let own = dpsm_filter_disk(&maps, p, receiver, tangent, light, hard(8), first());

@@ -190,7 +190,7 @@ fn disk_decides_as_osmans_reprojection_but_for_taps_at_texels_borders() {
         let mut farthest = 0.0_f64;
         for _ in 0..5_000 {
             let p = unit(&mut rng).widen();
-            let receiver = dpsm::scalar::bias::dpsm_receiver(p, unit(&mut rng).widen());
+            let receiver = dpsm::scalar::bias::dpsm_receiver(p, unit(&mut rng).widen(), 0.0);
             let reader = dpsm_filter_reader(receiver, light, hard(16));
             let kernel = dpsm_kernel(p, tangent);
             let mut direction = first();

@@ -98,7 +98,7 @@ fn missing_half_of_a_hemispherical_light_is_no_blocker_and_no_light() {
     let maps = DepthMaps::empty(128, 1, Sampling::Nearest);
     let value = |z: f64| {
         let p = Vec3::new(1.0, 0.0, z);
-        dpsm_pcss(&maps, p, dpsm_receiver(p, p), light, hard(32), 0.2, 0.3, first())
+        dpsm_pcss(&maps, p, dpsm_receiver(p, p, 0.0), light, hard(32), 0.2, 0.3, first())
     };
     // the search reaches the rim from 0.2; the kernel, a texel wide, does not
     assert_eq!([value(0.2), value(0.06), value(-0.06), value(-0.5)], [1.0, 1.0, 0.0, 0.0]);

@@ -87,7 +87,7 @@ pub fn narrow(light: DpsmLight<f64>) -> DpsmLight<f32> {
         first_layer: light.first_layer,
         placement: light.placement,
         hemispheres: light.hemispheres,
-        padding: 0,
+        reversed: 0,
     }
 }
 
@@ -148,6 +148,6 @@ impl Lid {
         let away = side * azimuth.cos() + other * azimuth.sin();
         let world = self.axis * FLOOR + away * (FLOOR * off.tan());
         let p = to_light(light, world);
-        (p, dpsm_receiver(p, to_light(light, self.axis)))
+        (p, dpsm_receiver(p, to_light(light, self.axis), 0.0))
     }
 }

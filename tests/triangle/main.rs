@@ -37,7 +37,7 @@ fn coverage<T: Float>(convert: impl Fn(f32) -> T, name: &str) {
         first_layer: 0,
         placement: 0,
         hemispheres: 2,
-        padding: 0,
+        reversed: 0,
     };
     let (mut compared, mut covered, mut mismatches) = (0, 0, 0);
     for _ in 0..2 * CASES {

@@ -31,8 +31,8 @@ struct DpsmLight {
     placement: u32,
     /// Number of maps: DPSM_HEMISPHERICAL or DPSM_OMNIDIRECTIONAL.
     hemispheres: u32,
-    /// Fills the struct to a multiple of 16 bytes; not read.
-    padding: u32,
+    /// DPSM_FORWARD or DPSM_REVERSED: what the maps store of a depth.
+    reversed: u32,
 }
 
 /// The array layer that holds a hemisphere's map.
@@ -197,6 +197,21 @@ fn dpsm_distance(depth: f32, near: f32, far: f32) -> f32 {
     return near + depth * (far - near);
 }
 
+/// A depth as the maps store it, and a stored one as the depth that it is: itself, or 1 less it for
+/// DPSM_REVERSED.
+///
+/// Domain: any, reversed 0 or 1. Bound: eps absolute for depths in [0, 1]; exact for DPSM_FORWARD.
+fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
+    return select(depth, 1.0 - depth, reversed == 1u);
+}
+
+/// dpsm_depth_stored of four depths.
+///
+/// Domain and bound: as for dpsm_depth_stored.
+fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
+    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+}
+
 /// True where a radial distance lies between the clipping spheres, both included.
 ///
 /// Domain: any l without NaN. Exact.
@@ -244,12 +259,13 @@ fn dpsm_caster_border(guard: f32) -> f32 {
 ///
 /// p: flipped light-space position; bias: added to the depth, in units of depth.
 /// Domain: largest |component| of p in [2^-51, 2^63] or p = 0. Bound: position as dpsm_project
-/// plus 3.5 eps relative, depth eps ((11.5 |p| + 5.5 near) / (far - near) + |bias|) absolute,
+/// plus 3.5 eps relative, depth eps ((11.5 |p| + 5.5 near) / (far - near) + |bias|) absolute, and
+/// eps more for DPSM_REVERSED,
 /// value eps (8 |p| / far + 1) absolute.
 fn dpsm_caster_vertex(p: vec3<f32>, light: DpsmLight, bias: f32) -> DpsmCasterVertex {
     let l = length(p);
     let disk = dpsm_project(p) / (1.0 + light.guard);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     let height = p.z - l * dpsm_caster_border(light.guard);
     return DpsmCasterVertex(vec4<f32>(disk, depth, 1.0), 0.5 + 0.5 * height / light.far);
 }
@@ -269,7 +285,7 @@ fn dpsm_caster_keep(hemisphere_value: f32) -> bool {
 fn dpsm_caster_fragment(p: vec3<f32>, light: DpsmLight, bias: f32) -> DpsmCasterFragment {
     let l = length(p);
     let inside = p.z >= l * dpsm_caster_border(light.guard);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     return DpsmCasterFragment(depth, inside && dpsm_within(l, light.near, light.far));
 }
 
@@ -685,7 +701,7 @@ fn dpsm_triangle_fragment(
     }
     let stored = dot(uv, uv) <= (1.0 + light.guard) * (1.0 + light.guard);
     let keep = stored && dpsm_triangle_covers(triangle, uv);
-    let depth = dpsm_depth(l, light.near, light.far) + bias;
+    let depth = dpsm_depth_stored(dpsm_depth(l, light.near, light.far) + bias, light.reversed);
     return DpsmCasterFragment(depth, keep && dpsm_within(l, light.near, light.far));
 }
 
@@ -1011,20 +1027,24 @@ struct DpsmReceiver {
     plane: vec4<f32>,
     /// |p|.
     distance: f32,
+    /// How far rounding may have moved the plane, as a share of the distance: DPSM_RECEIVER_ROUNDING
+    /// and what the world position's own adds.
+    rounding: f32,
 }
 
 /// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
 /// share of the distance: 64 eps, 32 for each (docs/bias.md).
 const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
 
-/// What rounding adds to a receiver's and a stored depth for each unit of distance, 22 eps.
-const DPSM_BIAS_DISTANCE: f32 = 0x1.6p-19;
+/// How far rounding may move a world position that vertices interpolate, for each unit of its largest
+/// coordinate: 16 eps (docs/bias.md).
+const DPSM_POSITION_ROUNDING: f32 = 0x1p-20;
+
+/// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
+const DPSM_BIAS_DISTANCE: f32 = 0x1.8p-19;
 
 /// The same for each unit of near, 10 eps.
 const DPSM_BIAS_NEAR: f32 = 0x1.4p-20;
-
-/// The same for depths up to 1, rounded as they are stored and compared: 2 eps.
-const DPSM_BIAS_DEPTH: f32 = 0x1p-22;
 
 /// A square's half-diagonal over half its side, sqrt(2), rounded up.
 const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
@@ -1032,14 +1052,25 @@ const DPSM_BIAS_DIAGONAL: f32 = 0x1.6a09e8p0;
 /// The square of the shortest normal that is one: 2^-100.
 const DPSM_BIAS_NORMAL: f32 = 0x1p-100;
 
+/// How far a surface point that vertices interpolate may lie off its triangle, in world units, for
+/// its world position: far from the world's origin a float's step is wide, however near the light is.
+///
+/// Domain: any. Exact, up to underflow.
+fn dpsm_position_error(world: vec3<f32>) -> f32 {
+    return DPSM_POSITION_ROUNDING * max(max(abs(world.x), abs(world.y)), abs(world.z));
+}
+
 /// The receiver at a light-space point with a normal of any length, of either side. A zero normal,
 /// or one shorter than 2^-50, gives the plane that faces the light.
 ///
-/// For dpsm_visibility_texel_centre and dpsm_visibility_footprint it must be the triangle's own: an
-/// interpolated one is of another plane. Domain: largest |component| of p in [2^-51, 2^62] or
-/// p = 0, normal no longer than 2^62. Bound: normal 11 eps absolute, each component; height
-/// 14 eps |p| absolute; distance 6 eps relative.
-fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
+/// error: how far p may lie off its surface in world units: dpsm_position_error of the world
+/// position, or 0 where that is within rounding of p itself. For dpsm_visibility_texel_centre and
+/// dpsm_visibility_footprint the normal must be the triangle's own: an interpolated one is of another
+/// plane. A plane so edge-on that the error may turn it away from the light may be dark.
+/// Domain: largest |component| of p in [2^-51, 2^62] or p = 0, normal no longer than 2^62,
+/// 0 <= error <= 2^62. Bound: normal 11 eps absolute, each component; height 14 eps |p| absolute;
+/// distance 6 eps relative; rounding 10.
+fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>, error: f32) -> DpsmReceiver {
     let distance = length(p);
     let square = dot(normal, normal);
     let known = square >= DPSM_BIAS_NORMAL;
@@ -1047,7 +1078,12 @@ fn dpsm_receiver(p: vec3<f32>, normal: vec3<f32>) -> DpsmReceiver {
     let size = select(max(distance, DPSM_SMALLEST), sqrt(square), known);
     let unit = along * (1.0 / size);
     let height = select(distance, dot(unit, p), known);
-    return DpsmReceiver(vec4<f32>(select(unit, -unit, vec3<bool>(height < 0.0)), abs(height)), distance);
+    let moved = min(error / max(distance, DPSM_SMALLEST), 1.0);
+    return DpsmReceiver(
+        vec4<f32>(select(unit, -unit, vec3<bool>(height < 0.0)), abs(height)),
+        distance,
+        DPSM_RECEIVER_ROUNDING + moved,
+    );
 }
 
 /// The cosine of a receiver's incidence.
@@ -1061,8 +1097,8 @@ fn dpsm_receiver_cosine(receiver: DpsmReceiver) -> f32 {
 /// that rounding of either plane allows. Where the direction does not meet the plane it is
 /// DPSM_SMALLEST, in front of all: a tap there never darkens.
 ///
-/// Domain: r <= 2^62. Between 1 - 96 eps / cos and 1 times the plane's distance, cos that of the
-/// incidence there, and at most 2^17 times its height.
+/// Domain: r <= 2^62. Between 1 - (rounding + 32 eps) / cos and 1 times the plane's distance, cos that
+/// of the incidence there, and at most 2^17 times its height.
 fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32) -> f32 {
     let d = dpsm_flip(dpsm_edge_terms(uv).xyz, hemisphere);
     let whole = 1.0 + dot(uv, uv);
@@ -1070,19 +1106,19 @@ fn dpsm_receiver_distance(receiver: DpsmReceiver, uv: vec2<f32>, hemisphere: u32
     if facing <= 0.0 {
         return DPSM_SMALLEST;
     }
-    let leaned = facing + DPSM_RECEIVER_ROUNDING * whole;
+    let leaned = facing + receiver.rounding * whole;
     return max(receiver.plane.w * (whole / leaned), DPSM_SMALLEST);
 }
 
 /// What is left of the bias where the same direction is compared, in units of depth: the format's
 /// quantum, both depths' rounding, and the relative error of distances that the map's method is
-/// allowed.
+/// allowed. All but the quantum is in proportion to the distance, whatever far is.
 ///
 /// quantum: 1 / 65535 for 16 bits, 1 / 16777215 for 24, 0 for a float. tolerance: 0 for exact maps.
 /// Domain: 0 < near < far <= 2^62, distance <= 2^62. Bound: 7 eps relative.
 fn dpsm_bias_slack(distance: f32, light: DpsmLight, quantum: f32, tolerance: f32) -> f32 {
     let spread = (tolerance + DPSM_BIAS_DISTANCE) * distance + DPSM_BIAS_NEAR * light.near;
-    return quantum + DPSM_BIAS_DEPTH + spread / (light.far - light.near);
+    return quantum + spread / (light.far - light.near);
 }
 
 /// The square of the chord on the unit sphere from a disk point to the farthest corner of the
@@ -1103,15 +1139,22 @@ fn dpsm_bias_window(uv: vec2<f32>, texels: f32, light: DpsmLight) -> f32 {
 /// depth, for the cosine of its incidence: l (1 - cos a / cos(a - psi)) / (far - near), and
 /// l (1 - cos a) where a <= psi.
 ///
-/// chord_square: dpsm_bias_window. Domain: 0 <= cosine <= 1. Bound: 12 eps l / (far - near)
-/// absolute, beyond what the planes' rounding, which is allowed for, adds.
-fn dpsm_bias_plane(cosine: f32, distance: f32, chord_square: f32, light: DpsmLight) -> f32 {
+/// chord_square: dpsm_bias_window; rounding: the receiver's. Domain: 0 <= cosine <= 1,
+/// 2^-17 <= rounding <= 2. Bound: 12 eps l / (far - near) absolute, beyond what the planes' rounding,
+/// which is allowed for, adds.
+fn dpsm_bias_plane(
+    cosine: f32,
+    distance: f32,
+    chord_square: f32,
+    rounding: f32,
+    light: DpsmLight,
+) -> f32 {
     let sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     let fall = 0.5 * chord_square;
     let turn = sqrt(chord_square * (1.0 - 0.25 * chord_square));
     // cos(a - psi) - cos a; the plane's nearest point, at a = 0, if it is within the window
     let steeper = max(sine * turn - cosine * fall, 0.0);
-    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + DPSM_RECEIVER_ROUNDING;
+    let drop = select(steeper, 1.0 - cosine, cosine >= 1.0 - fall) + rounding;
     return distance * (drop / (cosine + drop)) / (light.far - light.near);
 }
 
@@ -1126,7 +1169,8 @@ fn dpsm_bias_footprint(
     light: DpsmLight,
 ) -> f32 {
     let chord_square = dpsm_bias_window(uv, texels, light);
-    return dpsm_bias_plane(dpsm_receiver_cosine(receiver), receiver.distance, chord_square, light);
+    let cosine = dpsm_receiver_cosine(receiver);
+    return dpsm_bias_plane(cosine, receiver.distance, chord_square, receiver.rounding, light);
 }
 
 /// The centre, on the disk, of the texel that holds a disk point; of the nearest texel outside the
@@ -1196,12 +1240,12 @@ const DPSM_PLANE_DARK: f32 = 0.5;
 /// Where no plane is compared, how much nearer than the receiver, in texels, is still lit.
 const DPSM_PLANE_OWN: f32 = 0.3;
 
-/// How far rounding may turn and move a receiver's plane and a caster's against each other, as a
-/// share of the distance: 128 eps (docs/plane.md).
-const DPSM_PLANE_ROUNDING: f32 = 0x1p-16;
+/// How far rounding may turn and move a receiver's plane and a caster's against each other beyond the
+/// receiver's own rounding, as a share of the distance: 64 eps more (docs/plane.md).
+const DPSM_PLANE_ROUNDING: f32 = 0x1p-17;
 
-/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 32 eps more.
-const DPSM_PLANE_REACH: f32 = 0x1.00004p0;
+/// What a stored distance is to be taken for, so that rounding leaves it no nearer: 36 eps more.
+const DPSM_PLANE_REACH: f32 = 0x1.000048p0;
 
 /// A receiver in its map, moved along its normal.
 struct DpsmPlane {
@@ -1260,12 +1304,12 @@ fn dpsm_plane(
     return DpsmPlane(
         uv - lean * (moved * width),
         lean,
-        cosine + DPSM_PLANE_ROUNDING + moved * pitch * (cosine * cosine),
+        cosine + (receiver.rounding + DPSM_PLANE_ROUNDING) + moved * pitch * (cosine * cosine),
         cosine,
         pitch,
         receiver.plane.w * inside * range,
         l * inside * range * (1.0 - moved * pitch * cosine),
-        light.near * grown * range + (quantum + DPSM_BIAS_DEPTH),
+        light.near * grown * range + quantum,
         hemisphere,
     );
 }
@@ -1305,18 +1349,21 @@ fn dpsm_plane_share(at: DpsmPlane, four: vec4<f32>, stored: vec4<f32>) -> f32 {
 /// The depths of a moved receiver's own distance, less all bias: what is no nearer than the first is
 /// lit, what is nearer than the second, a texel nearer, is in shadow.
 ///
-/// distance: the receiver's, before it was moved. Domain: as for dpsm_plane, of
+/// receiver: as it was before it was moved. Domain: as for dpsm_plane, of
 /// DPSM_PLANE_DIAGONAL. Bound: docs/plane.md.
 fn dpsm_plane_depths(
     at: DpsmPlane,
-    distance: f32,
+    receiver: DpsmReceiver,
     light: DpsmLight,
     quantum: f32,
     tolerance: f32,
 ) -> vec2<f32> {
     let sine = length(at.lean);
+    let distance = receiver.distance;
     let texel = at.pitch * distance;
-    let own = distance - texel * (DPSM_PLANE_DIAGONAL * sine * at.cosine);
+    let off = receiver.rounding - DPSM_RECEIVER_ROUNDING;
+    let near = distance - distance * (off / max(at.cosine + off, DPSM_SMALLEST));
+    let own = near - texel * (DPSM_PLANE_DIAGONAL * sine * at.cosine);
     let lit = dpsm_receiver_depth(own - texel * DPSM_PLANE_OWN, light.near, light.far);
     let dark = dpsm_receiver_depth(own - texel, light.near, light.far);
     let slack = dpsm_bias_slack(distance, light, quantum, tolerance);
@@ -1466,7 +1513,7 @@ fn dpsm_cube_lookup_texel_centre(
     let direction = vec3<f32>(centre, 1.0);
     let l = length(direction);
     let facing = dot(receiver.plane.xyz, dpsm_cube_unview(direction, at.hemisphere));
-    let leaned = max(facing, 0.0) + DPSM_RECEIVER_ROUNDING * l;
+    let leaned = max(facing, 0.0) + receiver.rounding * l;
     // beyond the plane's horizon only what is nearer than the receiver can shadow it
     let there = min(receiver.plane.w / leaned, light.far / l);
     let z = select(receiver.distance / l, there, facing > 0.0);
@@ -1486,26 +1533,14 @@ fn dpsm_cube_lookup_footprint(
     light: DpsmLight,
     quantum: f32,
 ) -> DpsmLookup {
-    let normal = abs(dpsm_cube_view(receiver.plane.xyz, dpsm_cube_face(p)).xy);
+    var at = dpsm_cube_lookup(p, light);
+    let normal = abs(dpsm_cube_view(receiver.plane.xyz, at.hemisphere).xy);
     let side = texels * dpsm_texel_width(light.size, light.guard);
     let rise = side * (normal.x + normal.y);
-    return dpsm_cube_lookup_rising(p, receiver.plane.w, rise, light, quantum);
-}
-
-/// The lookup at the least distance along the face's axis that a plane has where n . (x, y, 1)
-/// rises by so much from where the point is, less the slack.
-///
-/// height: of the plane. Domain: as dpsm_cube_lookup_footprint, height and rise >= 0.
-fn dpsm_cube_lookup_rising(
-    p: vec3<f32>,
-    height: f32,
-    rise: f32,
-    light: DpsmLight,
-    quantum: f32,
-) -> DpsmLookup {
-    var at = dpsm_cube_lookup(p, light);
     let own = max(dpsm_cube_view(p, at.hemisphere).z, DPSM_SMALLEST);
-    let z = own * (height / (height + rise * own + DPSM_RECEIVER_ROUNDING * length(p)));
+    let height = receiver.plane.w;
+    let risen = height + rise * own + receiver.rounding * receiver.distance;
+    let z = own * (height / max(risen, DPSM_SMALLEST));
     at.depth = dpsm_cube_depth(z, light.near, light.far) - dpsm_cube_slack(z, light, quantum);
     return at;
 }
@@ -1812,11 +1847,11 @@ fn dpsm_filter_lookup(reader: DpsmReader, tap: DpsmTap, light: DpsmLight) -> Dps
     var depth = l * reader.depth.x - reader.depth.y;
     if reader.kind != DPSM_TAP_HARD {
         if is_met {
-            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l), uv, 1.0, light);
+            depth -= dpsm_bias_footprint(DpsmReceiver(reader.receiver.plane, l, reader.receiver.rounding), uv, 1.0, light);
         } else {
             // within the window the plane is no nearer than its height over the chord
             let chord = sqrt(dpsm_bias_window(uv, 1.0, light));
-            let plane = reader.receiver.plane.w / max(chord, DPSM_SMALLEST);
+            let plane = reader.receiver.plane.w / (chord + reader.receiver.rounding);
             depth = min(depth, plane * reader.depth.x - reader.depth.y);
         }
     }
@@ -2210,6 +2245,27 @@ fn dpsm_highlight(normal: vec3<f32>, to_light: vec3<f32>, to_eye: vec3<f32>) -> 
     let eighth = fourth * fourth;
     let sixteenth = eighth * eighth;
     return sixteenth * sixteenth;
+}
+
+/// How much of a spot light goes in a direction: all inside the inner angle, none outside the outer one,
+/// between them the square of what is linear in the cosine (glTF's KHR_lights_punctual).
+///
+/// cosine: of the angle to the spot's axis; inner, outer: of the two angles; a thousandth at least is
+/// taken to lie between them. Domain: cosine in [-1, 1], -4 <= outer <= inner <= 1. Bound: 10 eps
+/// absolute.
+fn dpsm_spot(cosine: f32, inner: f32, outer: f32) -> f32 {
+    let share = clamp((cosine - outer) / max(inner - outer, 0.001), 0.0, 1.0);
+    return share * share;
+}
+
+/// What a light's range leaves of it at a distance: 1 - (distance / range)^4, not below 0; the square of
+/// the distance is not in it (glTF's KHR_lights_punctual).
+///
+/// Domain: distance in [0, 2^62], range in [2^-62, 2^127]. Bound: 14 eps absolute.
+fn dpsm_range(distance: f32, range: f32) -> f32 {
+    let share = min(distance / range, 1.0);
+    let square = share * share;
+    return 1.0 - square * square;
 }
 
 /// Where the shadow test of a smoothly shaded triangle should be made: on the curved surface that the

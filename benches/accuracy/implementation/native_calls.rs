@@ -9,12 +9,12 @@ structs! {
     DpsmFour { s, t, crossed }
     DpsmHull { a, b, c }
     DpsmKernel { axis, reach, hemisphere }
-    DpsmLight { position, near, right, far, up, guard, forward, size, rectangle, first_layer, placement, hemispheres, padding }
+    DpsmLight { position, near, right, far, up, guard, forward, size, rectangle, first_layer, placement, hemispheres, reversed }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmPart { a, b, c }
     DpsmPlane { uv, lean, facing, cosine, pitch, height, distance, near, hemisphere }
     DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
-    DpsmReceiver { plane, distance }
+    DpsmReceiver { plane, distance, rounding }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
     DpsmTap { uv, hemisphere }
     DpsmTaps { count, kind, quantum, tolerance }
@@ -37,6 +37,8 @@ calls! {
     dpsm_light_coordinates(DpsmLight, u32, Vec2<f32>)
     dpsm_depth(f32, f32, f32)
     dpsm_distance(f32, f32, f32)
+    dpsm_depth_stored(f32, u32)
+    dpsm_depth_stored_four(Vec4<f32>, u32)
     dpsm_within(f32, f32, f32)
     dpsm_receiver_depth(f32, f32, f32)
     dpsm_caster_border(f32)
@@ -75,12 +77,13 @@ calls! {
     dpsm_classify_kind(DpsmPart, DpsmLight)
     dpsm_lookup(Vec3<f32>, DpsmLight)
     dpsm_receiver_vertex(Vec3<f32>, DpsmLight)
-    dpsm_receiver(Vec3<f32>, Vec3<f32>)
+    dpsm_position_error(Vec3<f32>)
+    dpsm_receiver(Vec3<f32>, Vec3<f32>, f32)
     dpsm_receiver_cosine(DpsmReceiver)
     dpsm_receiver_distance(DpsmReceiver, Vec2<f32>, u32)
     dpsm_bias_slack(f32, DpsmLight, f32, f32)
     dpsm_bias_window(Vec2<f32>, f32, DpsmLight)
-    dpsm_bias_plane(f32, f32, f32, DpsmLight)
+    dpsm_bias_plane(f32, f32, f32, f32, DpsmLight)
     dpsm_bias_footprint(DpsmReceiver, Vec2<f32>, f32, DpsmLight)
     dpsm_texel_centre(Vec2<f32>, DpsmLight)
     dpsm_lookup_texel_centre(Vec3<f32>, DpsmReceiver, DpsmLight, f32, f32)
@@ -88,7 +91,7 @@ calls! {
     dpsm_plane(Vec3<f32>, DpsmReceiver, f32, DpsmLight, f32, f32)
     dpsm_plane_four(DpsmPlane, DpsmLight)
     dpsm_plane_share(DpsmPlane, Vec4<f32>, Vec4<f32>)
-    dpsm_plane_depths(DpsmPlane, f32, DpsmLight, f32, f32)
+    dpsm_plane_depths(DpsmPlane, DpsmReceiver, DpsmLight, f32, f32)
     dpsm_cube_face(Vec3<f32>)
     dpsm_cube_view(Vec3<f32>, u32)
     dpsm_cube_unview(Vec3<f32>, u32)
@@ -100,7 +103,6 @@ calls! {
     dpsm_cube_slack(f32, DpsmLight, f32)
     dpsm_cube_lookup_texel_centre(Vec3<f32>, DpsmReceiver, DpsmLight, f32)
     dpsm_cube_lookup_footprint(Vec3<f32>, DpsmReceiver, f32, DpsmLight, f32)
-    dpsm_cube_lookup_rising(Vec3<f32>, f32, f32, DpsmLight, f32)
     dpsm_cube_direction(Vec2<f32>, u32, f32)
     dpsm_cube_distance(f32, Vec3<f32>, f32, f32)
     dpsm_cube_outside(Vec3<f32>, Vec3<f32>, Vec3<f32>, u32, f32)
@@ -138,5 +140,7 @@ calls! {
     dpsm_blend(Vec3<f32>, Vec3<f32>, f32)
     dpsm_lambert(Vec3<f32>, Vec3<f32>)
     dpsm_highlight(Vec3<f32>, Vec3<f32>, Vec3<f32>)
+    dpsm_spot(f32, f32, f32)
+    dpsm_range(f32, f32)
     dpsm_shadow_terminator(Vec3<f32>, Vec3<f32>, DpsmCorner, DpsmCorner, DpsmCorner)
 }

@@ -9,7 +9,7 @@ use crate::gpu::multiview::view_mask;
 use crate::gpu::passes::{MapPass, PASS_BYTES, depth_attachment};
 use crate::gpu::timer::{Ends, Stamps, render_writes};
 use crate::render::{Method, common};
-use crate::scalar::light::DPSM_ATLAS;
+use crate::scalar::light::{DPSM_ATLAS, DPSM_REVERSED};
 
 /// What to record of the maps' making. Drawing without sorting needs lists that were kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +81,9 @@ impl ShadowMaps {
                     };
                     begun += 1;
                     let view = &self.targets[target + pass_number];
-                    let mut pass = begin(encoder, (view, views), batch_number == 0, stamps, ends);
+                    let empty = if light.reversed == DPSM_REVERSED { 0.0 } else { 1.0 };
+                    let clear = (batch_number == 0).then_some(empty);
+                    let mut pass = begin(encoder, (view, views), clear, stamps, ends);
                     let is_atlas = light.placement == DPSM_ATLAS;
                     let drawn = if is_atlas { 0..maps } else { pass_number..pass_number + 1 };
                     for map in drawn {
@@ -188,16 +190,17 @@ fn draw_ranges(
     }
 }
 
-/// Begins the pass into a layer, or into one a view; cleared unless an earlier chunk drew there.
+/// Begins the pass into a layer, or into one a view; cleared to a depth unless an earlier chunk drew
+/// there.
 fn begin<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     (target, views): (&wgpu::TextureView, u32),
-    clear: bool,
+    clear: Option<f32>,
     stamps: Stamps<'_>,
     ends: Ends,
 ) -> wgpu::RenderPass<'e> {
-    let mut attachment = depth_attachment(target, 1.0);
-    if !clear {
+    let mut attachment = depth_attachment(target, clear.unwrap_or_default());
+    if clear.is_none() {
         let (load, store) = (wgpu::LoadOp::Load, wgpu::StoreOp::Store);
         attachment.depth_ops = Some(wgpu::Operations { load, store });
     }

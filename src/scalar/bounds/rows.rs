@@ -90,6 +90,10 @@ impl Light<'_> {
     fn guard(&self) -> f64 {
         self.0[11]
     }
+    /// 1 where 1 less the depth is stored, which rounds once more.
+    fn reversed(&self) -> f64 {
+        self.0[23]
+    }
     fn atlas(&self) -> bool {
         self.0[21] == 1.0
     }
@@ -186,6 +190,7 @@ fn receiver(i: &[f64]) -> bool {
         && i[4] >= two(-51)
         && i[4] <= two(62)
         && (0.0..=i[4] * (1.0 + 32.0 * EPS)).contains(&i[3])
+        && within(&i[5..6], two(-17), 2.0)
 }
 
 fn triangle(i: &[f64]) -> bool {
@@ -272,6 +277,10 @@ depth {
     dpsm_distance Absolute
         |i| spheres(i[1], i[2]) && i[0].abs() <= two(24),
         |i, r, a| absolute(r, a, 3.0, i[1] + i[0].abs() * i[2]);
+    dpsm_depth_stored Absolute
+        |i| within(&i[..1], 0.0, 1.0) && i[1] <= 1.0, |_, r, a| absolute(r, a, 1.0, 1.0);
+    dpsm_depth_stored_four Absolute
+        |i| within(&i[..4], 0.0, 1.0) && i[4] <= 1.0, |_, r, a| absolute(r, a, 1.0, 1.0);
     dpsm_within Exact any, |_, r, a| exact(r, a);
     dpsm_receiver_depth Absolute
         |i| spheres(i[1], i[2]) && within(&i[..1], 0.0, two(62)),
@@ -283,7 +292,7 @@ caster {
         |i| point(&i[..3], -51, 62) && light(i, 3).inside() && within(&i[27..], 0.0, 1.0),
         |i, r, a| {
             let (l, light) = (length(&i[..3]), light(i, 3));
-            let depth = (11.5 * l + 5.5 * light.near()) / light.range() + i[27];
+            let depth = (11.5 * l + 5.5 * light.near()) / light.range() + i[27] + light.reversed();
             projected(i, &r[..2], &a[..2], 3.5)
                 .or(absolute(&r[2..3], &a[2..3], 1.0, depth))
                 .or(exact(&r[3..4], &a[3..4]))
@@ -294,7 +303,7 @@ caster {
         |i| point(&i[..3], -51, 62) && light(i, 3).inside() && within(&i[27..], 0.0, 1.0),
         |i, r, a| {
             let (l, light) = (length(&i[..3]), light(i, 3));
-            let depth = (11.5 * l + 5.5 * light.near()) / light.range() + i[27];
+            let depth = (11.5 * l + 5.5 * light.near()) / light.range() + i[27] + light.reversed();
             absolute(&r[..1], &a[..1], 1.0, depth)
         };
 }
@@ -411,16 +420,18 @@ visibility {
         };
 }
 bias {
+    dpsm_position_error Exact |i| largest(i) <= two(127), |_, r, a| exact(r, a);
     dpsm_receiver Absolute
-        |i| point(&i[..3], -51, 62) && point(&i[3..], -50, 61),
+        |i| point(&i[..3], -51, 62) && point(&i[3..6], -50, 61) && within(&i[6..], 0.0, two(62)),
         |i, r, a| {
             let l = length(&i[..3]);
             absolute(&r[..3], &a[..3], 11.0, 1.0)
                 .or(absolute(&r[3..4], &a[3..4], 14.0, l))
-                .or(relative(&r[4..], &a[4..], 6.0))
+                .or(relative(&r[4..5], &a[4..5], 6.0))
+                .or(relative(&r[5..], &a[5..], 10.0))
         };
     dpsm_receiver_cosine Absolute |i| receiver(i), |_, r, a| absolute(r, a, 23.0, 1.0);
-    dpsm_receiver_distance Interval |i| receiver(&i[..5]) && largest(&i[5..7]) <= two(61), none;
+    dpsm_receiver_distance Interval |i| receiver(&i[..6]) && largest(&i[6..8]) <= two(61), none;
     dpsm_bias_slack Relative
         |i| within(&i[..1], 0.0, two(62)) && light(i, 1).inside() && within(&i[25..], 0.0, 1.0),
         |_, r, a| relative(r, a, 7.0);
@@ -432,33 +443,34 @@ bias {
             within(&i[..1], 0.0, 1.0)
                 && within(&i[1..2], 0.0, two(62))
                 && within(&i[2..3], 0.0, 2.0)
-                && light(i, 3).inside()
+                && within(&i[3..4], two(-17), 2.0)
+                && light(i, 4).inside()
         },
-        |i, r, a| absolute(r, a, 12.0, i[1] / light(i, 3).range());
+        |i, r, a| absolute(r, a, 12.0, i[1] / light(i, 4).range());
     dpsm_bias_footprint Interval
         |i| {
-            receiver(&i[..5])
-                && largest(&i[5..7]) <= two(29)
-                && within(&i[7..8], 0.0, two(24))
-                && light(i, 8).inside()
+            receiver(&i[..6])
+                && largest(&i[6..8]) <= two(29)
+                && within(&i[8..9], 0.0, two(24))
+                && light(i, 9).inside()
         },
         none;
     dpsm_texel_centre Absolute
         |i| largest(&i[..2]) <= two(62) && light(i, 2).inside() && i[17] <= two(20) && i[17].fract() == 0.0,
         |i, r, a| absolute(r, a, 6.0, 1.0 + light(i, 2).guard());
     dpsm_lookup_texel_centre Interval
-        |i| point(&i[..3], -51, 61) && receiver(&i[3..8]) && light(i, 8).inside(), none;
+        |i| point(&i[..3], -51, 61) && receiver(&i[3..9]) && light(i, 9).inside(), none;
     dpsm_lookup_biased Interval |i| point(&i[..3], -51, 61) && light(i, 4).inside(), none;
 }
 plane {
     dpsm_plane Interval
         |i| {
             point(&i[..3], -51, 60)
-                && receiver(&i[3..8])
-                && within(&i[8..9], 0.0, 2.0)
-                && light(i, 9).inside()
-                && light(i, 9).far() <= two(60)
-                && within(&i[33..], 0.0, 1.0)
+                && receiver(&i[3..9])
+                && within(&i[9..10], 0.0, 2.0)
+                && light(i, 10).inside()
+                && light(i, 10).far() <= two(60)
+                && within(&i[34..], 0.0, 1.0)
         },
         none;
     dpsm_plane_four Interval |i| plane(&i[..11]) && light(i, 11).inside() && light(i, 11).0[15] >= 2.0, none;
@@ -467,9 +479,9 @@ plane {
     dpsm_plane_depths Interval
         |i| {
             plane(&i[..11])
-                && within(&i[11..12], two(-51), two(61))
-                && light(i, 12).inside()
-                && within(&i[36..], 0.0, 1.0)
+                && receiver(&i[11..17])
+                && light(i, 17).inside()
+                && within(&i[41..], 0.0, 1.0)
         },
         none;
 }
@@ -512,17 +524,15 @@ cube {
         |i| light(i, 1).inside() && within(&i[..1], i[4], two(62)) && within(&i[25..], 0.0, 1.0),
         |_, r, a| relative(r, a, 11.0);
     dpsm_cube_lookup_texel_centre Interval
-        |i| point(&i[..3], -51, 61) && receiver(&i[3..8]) && light(i, 8).inside(), none;
+        |i| point(&i[..3], -51, 61) && receiver(&i[3..9]) && light(i, 9).inside(), none;
     dpsm_cube_lookup_footprint Interval
         |i| {
             point(&i[..3], -51, 61)
-                && receiver(&i[3..8])
-                && within(&i[8..9], 0.0, two(24))
-                && light(i, 9).inside()
+                && receiver(&i[3..9])
+                && within(&i[9..10], 0.0, two(24))
+                && light(i, 10).inside()
         },
         none;
-    dpsm_cube_lookup_rising Interval
-        |i| point(&i[..3], -51, 61) && within(&i[3..5], 0.0, two(61)) && light(i, 5).inside(), none;
     dpsm_cube_direction Absolute
         |i| within(&i[..2], 0.0, 1.0) && within(&i[3..], 0.0, 1.0),
         |i, r, a| absolute(r, a, 6.0, 1.0 + i[3]);
@@ -584,14 +594,14 @@ kernel {
 }
 filter {
     dpsm_filter_reader Relative
-        |i| receiver(&i[..5]) && light(i, 5).inside() && within(&i[31..], 0.0, 1.0),
+        |i| receiver(&i[..6]) && light(i, 6).inside() && within(&i[32..], 0.0, 1.0),
         |_, r, a| {
-            exact(&r[..6], &a[..6])
-                .or(relative(&r[6..15], &a[6..15], 6.0))
-                .or(relative(&r[15..], &a[15..], 12.0))
+            exact(&r[..7], &a[..7])
+                .or(relative(&r[7..16], &a[7..16], 6.0))
+                .or(relative(&r[16..], &a[16..], 12.0))
         };
     dpsm_filter_lookup Interval
-        |i| receiver(&i[..5]) && on_disk(&i[16..18]) && i[18] <= 1.0 && light(i, 19).inside(), none;
+        |i| receiver(&i[..6]) && on_disk(&i[17..19]) && i[19] <= 1.0 && light(i, 20).inside(), none;
     dpsm_filter_cone Interval
         |i| {
             plane(&i[..11])
@@ -679,6 +689,12 @@ shade {
     dpsm_highlight Absolute
         |i| i.chunks(3).all(|v| (length(v) - 1.0).abs() <= 8.0 * EPS),
         |_, r, a| absolute(r, a, 470.0, 1.0);
+    dpsm_spot Absolute
+        |i| within(&i[..1], -1.0, 1.0) && within(&i[2..], -4.0, i[1]) && i[1] <= 1.0,
+        |_, r, a| absolute(r, a, 10.0, 1.0);
+    dpsm_range Absolute
+        |i| within(&i[..1], 0.0, two(62)) && within(&i[1..], two(-62), two(127)),
+        |_, r, a| absolute(r, a, 14.0, 1.0);
     dpsm_shadow_terminator Absolute
         |i| {
             // p, weights, three times position and normal
