@@ -1,5 +1,6 @@
 //! What a rendering is made of, whoever makes it: the adapter (`gpu`) or the ports (`cpu`).
 
+mod clipped;
 mod error;
 mod exposure;
 mod extent;
@@ -8,6 +9,8 @@ mod meshes;
 mod picture;
 mod projection;
 mod settings;
+mod shine;
+mod spheres;
 
 pub use error::FrameError;
 pub use exposure::{BACKGROUND, BRIGHTEST, CLIPPED, Linear, MOST_SAMPLES, WHITE, exposure, srgb};
@@ -20,6 +23,7 @@ pub use settings::{
     Bias, Casting, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings,
     Taps, constant_bias, depth_tolerance,
 };
+pub use shine::Shine;
 
 use std::ops::Range;
 use std::time::Duration;
@@ -30,10 +34,12 @@ use crate::scalar::cube::{DPSM_CUBE_FACES, dpsm_cube_guard};
 use crate::scalar::float as scalar;
 use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::kernel::dpsm_kernel_guard;
-use crate::scalar::light::{DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DpsmLight};
+use crate::scalar::light::{
+    DPSM_FORWARD, DPSM_HEMISPHERICAL, DPSM_LAYERS, DPSM_OMNIDIRECTIONAL, DPSM_REVERSED, DpsmLight,
+};
 use crate::scalar::maps::DepthMaps;
 use crate::scalar::triangle::dpsm_triangle_plane;
-use crate::scene::{Camera, Mask, Scene};
+use crate::scene::{Camera, Mask, Scene, in_file, nearest_of};
 use meshes::Meshes;
 
 /// A vertex as the passes read it.
@@ -98,6 +104,10 @@ pub struct Frame {
     pub more: Vec<DpsmLight<f32>>,
     /// The light's linear colour.
     pub color: Vec3,
+    /// What the lights reach.
+    pub shine: Shine,
+    /// Where the origin of all positions lies in the coordinates of the scene's file.
+    pub origin: DVec3,
     /// The constant bias in units of depth, at the receiver, where that is what is taken.
     pub bias: f32,
     /// The camera.
@@ -177,6 +187,10 @@ impl Frame {
             let remedy = "--lookup pixel";
             return Err(FrameError::Cube { what: "lookup by vertex", remedy });
         }
+        if settings.method == Method::Cube && settings.reversed {
+            let remedy = "depths as they are";
+            return Err(FrameError::Cube { what: "reversed depth", remedy });
+        }
         settings.check_passes()?;
         check_filter(&settings)?;
         check_size("--size", settings.size, LARGEST_SIZE)?;
@@ -191,23 +205,17 @@ impl Frame {
         if !(0.0..0.5).contains(&bias) {
             return Err(FrameError::Bias(bias));
         }
-        let distance = |vertex: &Vertex| vertex.position.as_dvec3().distance(position.as_dvec3());
-        let reach = vertices.iter().map(distance).fold(0.0, f64::max) as f32;
-        // with nothing to reach, far is near's thousandfold all the same
-        let far = settings.far.unwrap_or_else(|| match triangles.is_empty() {
-            true => settings.near.map_or(EMPTY_FAR, |near| near / NEAR_SHARE),
-            false => reach * FAR_SLACK,
-        });
-        let near = settings.near.unwrap_or(far * NEAR_SHARE);
-        if !(near >= SMALLEST && near < far && far <= LARGEST) {
-            return Err(FrameError::Spheres { near, far });
-        }
+        let corner =
+            |index: u32| vertices[index as usize].position.as_dvec3() - position.as_dvec3();
+        let nearest =
+            || triangles.iter().map(|t| nearest_of(t.map(corner))).fold(f64::INFINITY, f64::min);
+        let nearest = (!triangles.is_empty()).then_some(nearest);
+        let [near, far] = settings.spheres(&vertices, position.as_dvec3(), nearest)?;
         let [right, up, forward] = basis(axis.as_dvec3()).map(|row| float(row.as_vec3()));
         let size = settings.map_size();
         let cube = settings.method == Method::Cube;
         let guard = if cube { dpsm_cube_guard(size as f32) } else { guard_band(size) };
-        // a face cuts at a plane, whose corners lie this much farther out than its middle
-        let corner = if cube { (1.0 + 2.0 * (1.0 + guard) * (1.0 + guard)).sqrt() } else { 1.0 };
+        let corner = if cube { spheres::corner(guard) } else { 1.0 };
         let light = DpsmLight {
             position: float(position),
             near: near / corner,
@@ -225,7 +233,7 @@ impl Frame {
                 (false, true) => DPSM_HEMISPHERICAL,
                 (false, false) => DPSM_OMNIDIRECTIONAL,
             },
-            padding: 0,
+            reversed: if settings.reversed { DPSM_REVERSED } else { DPSM_FORWARD },
         };
         let view = View::new(camera, settings.image)?;
         let color = Vec3::ONE;
@@ -239,6 +247,8 @@ impl Frame {
             light,
             more,
             color,
+            shine: Shine::EVERYWHERE,
+            origin: scene.origin,
             bias,
             view,
             settings,
@@ -250,6 +260,11 @@ impl Frame {
     /// The constant bias, where it is what is taken.
     pub fn constant_bias(&self) -> Option<f32> {
         matches!(self.settings.bias_taken(), Bias::Constant(_)).then_some(self.bias)
+    }
+
+    /// A world position in the coordinates of the scene's file.
+    pub fn in_file(&self, position: scalar::Vec3<f32>) -> DVec3 {
+        in_file(Vec3::new(position.x, position.y, position.z), self.origin)
     }
 
     /// A triangle's unit normal in light space, of either side; zero without area or corners.
@@ -282,15 +297,6 @@ impl Frame {
         }
     }
 }
-
-/// Far's distance beyond the farthest vertex, so that rounding never clips it.
-const FAR_SLACK: f32 = 1.001;
-
-/// Far in metres where there is nothing: any will do.
-const EMPTY_FAR: f32 = 1.0;
-
-/// Near as a share of far.
-const NEAR_SHARE: f32 = 1e-3;
 
 /// The camera's near plane as a share of the distance to its target.
 const CAMERA_NEAR_SHARE: f64 = 1e-3;

@@ -9,7 +9,7 @@ use crate::scalar::classify::{
     DPSM_CULLED, DPSM_CURVED, DPSM_FLAT, DPSM_IN_BACK, DPSM_IN_FRONT, DPSM_LARGE, DPSM_STEEP,
     DPSM_STRADDLING, dpsm_classify, dpsm_classify_kind, dpsm_classify_part,
 };
-use crate::scalar::depth::dpsm_depth;
+use crate::scalar::depth::{dpsm_depth, dpsm_depth_stored};
 use crate::scalar::float::{Vec2, Vec3, Vec4};
 use crate::scalar::hemisphere::{DPSM_FRONT, dpsm_flip, dpsm_to_light};
 use crate::scalar::paraboloid::dpsm_texel_width;
@@ -54,7 +54,11 @@ impl Target<'_> {
     fn store(&mut self, x: u32, y: u32, depth: f32) {
         if (0.0..=1.0).contains(&depth) {
             let texel = &mut self.layer[(y * self.frame.settings.size + x) as usize];
-            *texel = texel.min(self.frame.settings.format.store(depth));
+            let stored = self.frame.settings.format.store(depth);
+            *texel = match self.frame.settings.reversed {
+                false => texel.min(stored),
+                true => texel.max(stored),
+            };
         }
     }
 
@@ -177,7 +181,8 @@ impl Target<'_> {
         triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
             let uv = self.disk(fragment.x, fragment.y);
             let l = dpsm_triangle_distance(prepared, uv);
-            self.store(fragment.x, fragment.y, dpsm_depth(l, light.near, light.far));
+            let depth = dpsm_depth(l, light.near, light.far);
+            self.store(fragment.x, fragment.y, dpsm_depth_stored(depth, light.reversed));
         });
     }
 

@@ -54,6 +54,9 @@ fn timed_maps(
     let (size, hemispheres) = (frame.settings.map_size(), frame.light.hemispheres);
     reserve::<f32>("--size", u64::from(size) * u64::from(size) * u64::from(hemispheres))?;
     let mut maps = DepthMaps::empty(size, hemispheres, frame.settings.sampling_taken());
+    if frame.settings.reversed {
+        maps = maps.reverse();
+    }
     let layers = maps.depths.chunks_mut(size as usize * size as usize);
     let start = Instant::now();
     for (hemisphere, layer) in (0..).zip(layers) {

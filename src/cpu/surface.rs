@@ -69,7 +69,7 @@ impl Surface {
             float(color * self.albedo * (AMBIENT * (0.5 + 0.5 * normal.dot(to_eye).max(0.0)))),
             float(color * self.albedo * cosine),
             float(color * SPECULAR * highlight),
-            visibility,
+            visibility * frame.shine.share(self.p),
         );
         Vec3::new(lit.x, lit.y, lit.z)
     }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::camera::Visible;
 use super::surface::Surface;
 use super::vector;
-use crate::measure::truth_of;
+use crate::measure::truth_of_casters;
 use crate::render::{Frame, Linear};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::light::DpsmLight;
@@ -21,7 +21,7 @@ use crate::truth::{Ray, Truth};
 /// A texel that shows the same triangle as all of its neighbours has the light of its centre; the
 /// others take all samples of the settings.
 pub fn views(frame: &Frame, timings: &mut Vec<(String, Duration)>) -> Vec<Linear> {
-    let truth = truth_of(frame);
+    let truth = truth_of_casters(frame);
     let light = frame.light.widen();
     let names = frame.settings.method.projection().names();
     let view = |(map, name): (u32, &&str)| {

@@ -87,7 +87,11 @@ fn arithmetic(bench: &Bench<'_>, points: &[Point]) -> Source {
         };
         let bound = f64::from(f32::EPSILON) * bound / (far - near);
         let measured = bench.distance(depth.into(), uv) - bench.distance(exact, uv);
-        source(measured.abs(), bench.spread(exact, bound, uv), format!("{}", point.world))
+        source(
+            measured.abs(),
+            bench.spread(exact, bound, uv),
+            format!("{}", point.world + bench.frame.origin),
+        )
     };
     largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
@@ -108,7 +112,11 @@ fn storage(bench: &Bench<'_>, points: &[Point], format: Format) -> Source {
         let exact = bench.projection.depth(bench.to_light(point.world), map, bench.light);
         let stored = format.store(exact as f32);
         let measured = bench.distance(stored.into(), uv) - bench.distance(exact, uv);
-        source(measured.abs(), bench.spread(exact, off, uv), format!("{}", point.world))
+        source(
+            measured.abs(),
+            bench.spread(exact, off, uv),
+            format!("{}", point.world + bench.frame.origin),
+        )
     };
     largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
@@ -145,7 +153,7 @@ fn resolution(bench: &Bench<'_>, points: &[Point]) -> Source {
             }
         }
         let texels = (centre_uv - uv).length() * other / bench.texel();
-        source(texels, format!("{}", point.world))
+        source(texels, format!("{}", point.world + bench.frame.origin))
     };
     largest(points.par_iter().map(at), source(0.0, String::new()))
 }
@@ -182,7 +190,7 @@ fn bias(bench: &Bench<'_>, points: &[Point]) -> Source {
         let bias = distance - bench.distance(f64::from(at.depth), uv);
         let gap = bench.occluder(&compared).map(|hit| distance - hit.distance);
         let gap = gap.filter(|gap| *gap <= bias);
-        source(gap.unwrap_or(0.0), bias, format!("{}", point.world))
+        source(gap.unwrap_or(0.0), bias, format!("{}", point.world + bench.frame.origin))
     };
     largest(points.par_iter().map(at), source(0.0, 0.0, String::new()))
 }
@@ -326,7 +334,7 @@ fn image_weights(disk: [Vec2<f64>; 3], at: Vec2<f64>) -> Option<[f64; 3]> {
 
 fn place(bench: &Bench<'_>, triangle: u32) -> String {
     let [a, b, c] = bench.corners(triangle);
-    let middle: DVec3 = (a + b + c) / 3.0;
+    let middle: DVec3 = (a + b + c) / 3.0 + bench.frame.origin;
     let holds = |(_, triangles): &&(String, Range<u32>)| triangles.contains(&triangle);
     let mesh = bench.frame.meshes.iter().find(holds).map_or("", |(name, _)| name);
     format!("mesh `{mesh}` around {middle:.3}")

@@ -87,7 +87,7 @@ impl Part {
         // what a step of the format alone makes of the distance needs no ray
         let step = |hit: f64| {
             let quantum = f64::from(bench.frame.settings.format.quantum());
-            let stored = bench.maps.depths[texel.index].into();
+            let stored = bench.maps.depth(texel.index).into();
             bench.spread(stored, quantum, texel.uv) / hit
         };
         if off.error > WRONG {

@@ -95,7 +95,7 @@ pub fn map_error(bench: &Bench<'_>, tau: f64, row_done: impl Fn() + Sync) -> Map
         rim.join(in_rim);
         centre.join(in_centre);
     }
-    let search = Search { bench, tau, jump: JUMP };
+    let search = Search { bench, tau, jump: JUMP, from_light: false };
     let marks = Marks::new(bench.maps.depths.len());
     rim.ask(&marks);
     centre.ask(&marks);
@@ -125,7 +125,7 @@ impl Texel {
     /// The texel of an index in the maps.
     pub fn at(bench: &Bench<'_>, index: usize) -> Self {
         let (layer, x, y, uv) = place(bench, index);
-        let depth = bench.maps.depths[index];
+        let depth = bench.maps.depth(index);
         let stored = (depth < 1.0).then(|| bench.distance(f64::from(depth), uv));
         Self { index, layer, x, y, uv, stored, hit: bench.first_distance(uv, layer) }
     }
@@ -146,7 +146,7 @@ impl Texel {
 
     fn describe(&self, bench: &Bench<'_>) -> Option<WorstTexel> {
         let direction = bench.direction(self.uv, self.layer);
-        let normal = bench.normal(bench.first_hit(direction)?.triangle);
+        let normal = bench.normal(bench.first_hit(direction, false)?.triangle);
         // by sine and cosine, accurate at 0 and at 90 degrees
         let tangent = normal.cross(direction).length() / normal.dot(direction).abs();
         Some(WorstTexel {

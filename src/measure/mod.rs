@@ -38,7 +38,7 @@ use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::hemisphere::dpsm_to_light;
 use crate::scalar::light::DpsmLight;
 use crate::scalar::maps::DepthMaps;
-use crate::truth::{Hit, Ray, Truth};
+use crate::truth::{Hit, Ray, TOUCH, Truth};
 
 /// Width of the seam band in texels on either side.
 const SEAM_TEXELS: f64 = 5.0;
@@ -58,6 +58,8 @@ pub struct Bench<'a> {
     pub projection: Projection,
     /// The light's world position.
     pub origin: DVec3,
+    /// Of the triangles, those that cast shadows, where some do not.
+    casters: Option<Truth>,
     /// Light space to world space: the inverse of the struct's own rotation as rounded to f32.
     to_world: DMat3,
 }
@@ -78,8 +80,13 @@ pub fn truth_of(frame: &Frame) -> Truth {
     truth_of_some(frame, |_| true)
 }
 
-/// The same without the meshes that are left out of the maps: nothing meets their triangles.
+/// The same without the meshes that cast no shadow: nothing meets their triangles.
 pub fn truth_of_casters(frame: &Frame) -> Truth {
+    truth_of_some(frame, |triangle| !frame.is_left_out(triangle))
+}
+
+/// The same with those alone that are drawn into the maps.
+pub fn truth_of_drawn(frame: &Frame) -> Truth {
     let drawn = frame.drawn();
     truth_of_some(frame, |triangle| drawn.iter().any(|(range, _)| range.contains(&triangle)))
 }
@@ -105,7 +112,9 @@ impl<'a> Bench<'a> {
         let to_light = DMat3::from_cols(right, up, forward).transpose();
         let to_world = to_light.inverse();
         let projection = frame.settings.method.projection();
-        Self { frame, maps, truth, light, projection, origin: world(light.position), to_world }
+        let origin = world(light.position);
+        let casters = frame.has_left_out().then(|| truth_of_casters(frame));
+        Self { frame, maps, truth, light, projection, origin, casters, to_world }
     }
 
     /// A world position in light space.
@@ -133,18 +142,25 @@ impl<'a> Bench<'a> {
     /// The visibility of a point by the frame's maps and bias.
     pub fn visibility(&self, point: &Point) -> f32 {
         let (p, normal) = self.receiver(point);
-        self.frame.visibility(self.maps, p, normal)
+        match self.frame.shine.share(p) > 0.0 {
+            true => self.frame.visibility(self.maps, p, normal),
+            false => 0.0,
+        }
     }
 
     /// The first hit of a texel's direction between near and far: its distance.
     pub fn first_distance(&self, uv: Vec2<f64>, map: u32) -> Option<f64> {
-        self.first_hit(self.direction(uv, map)).map(|hit| hit.distance)
+        self.first_hit(self.direction(uv, map), false).map(|hit| hit.distance)
     }
 
-    /// The first hit along a world direction between near and far.
-    fn first_hit(&self, direction: DVec3) -> Option<Hit> {
+    /// The first hit along a world direction between near and far, as maps are to hold it, or
+    /// between the light and far: what near cuts off shadows all the same. What the light lies on
+    /// is not hit.
+    fn first_hit(&self, direction: DVec3, from_light: bool) -> Option<Hit> {
         let [near, far] = self.clip(direction);
-        self.truth.first_hit(&Ray { near, far, ..Ray::new(self.origin, direction) })
+        let touch = TOUCH * (self.origin.abs().max_element() + far);
+        let near = if from_light { touch } else { near.max(touch) };
+        self.casters().first_hit(&Ray { near, far, ..Ray::new(self.origin, direction) })
     }
 
     /// Where near and far clip along a world direction: spheres, or a cube's planes.
@@ -156,25 +172,29 @@ impl<'a> Bench<'a> {
         [self.light.near * stretch, self.light.far * stretch]
     }
 
-    /// What keeps the light from a point, farther than near from the light.
+    /// What keeps the light from a point, wherever near and far are.
     pub fn occluder(&self, point: &Point) -> Option<Hit> {
-        let [near, _] = self.clip(point.world - self.origin);
-        self.truth.occluder(self.origin, point.world, point.triangle, near)
+        self.casters().occluder(self.origin, point.world, point.triangle, 0.0)
     }
 
-    /// True where nothing between near and the point keeps the light from it.
+    /// What casts shadows.
+    pub(crate) fn casters(&self) -> &Truth {
+        self.casters.as_ref().unwrap_or(self.truth)
+    }
+
+    /// True where nothing keeps the light from the point.
     pub fn sees(&self, point: &Point) -> bool {
         self.occluder(point).is_none()
     }
 
-    /// True where the light has a map of a point's direction.
+    /// True where the light has a map of a point's direction, and reaches it.
     pub fn is_mapped(&self, point: &Point) -> bool {
         let p = self.to_light(point.world).narrow();
-        self.projection.lookup(p, self.frame.light).mapped
+        self.projection.lookup(p, self.frame.light).mapped && self.frame.shine.share(p) > 0.0
     }
 
     /// True where the light reaches a point: nothing keeps it away, and the light has a map there.
-    /// Behind a hemispherical light all is dark by definition.
+    /// Behind a hemispherical light, outside a spot's cone and beyond the range all is dark by definition.
     pub fn is_lit(&self, point: &Point) -> bool {
         self.is_mapped(point) && self.sees(point)
     }

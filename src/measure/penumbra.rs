@@ -98,7 +98,7 @@ pub fn penumbra_error(
     let errors: Vec<Judged> = points
         .par_iter()
         .filter_map(|point| {
-            let (hemisphere, uv) = bench.place(point);
+            let (_, uv) = bench.place(point);
             let visibility = bench.visibility(point);
             let (distance, pitch) = ((point.world - bench.origin).length(), bench.pitch(uv));
             let half_angle = cone(bench, distance, pitch);
@@ -107,7 +107,7 @@ pub fn penumbra_error(
                 _ => coverage(bench, point, half_angle),
             };
             point_done();
-            (hemisphere < bench.frame.light.hemispheres).then(|| Judged {
+            bench.is_mapped(point).then(|| Judged {
                 error: f64::from(visibility) - truth,
                 partial: truth > 0.0 && truth < 1.0,
                 seam: bench.at_seam(uv),

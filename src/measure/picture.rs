@@ -151,6 +151,9 @@ impl Bench<'_> {
             return self.visibility(point);
         }
         let (p, normal) = self.receiver(point);
+        if self.frame.shine.share(p) <= 0.0 {
+            return 0.0;
+        }
         let places = settings.places();
         let of = |place: &[f32; 2]| {
             let shift = self.frame.view.sampled(*place, settings.image).shift;

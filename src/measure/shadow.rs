@@ -51,14 +51,14 @@ pub fn judge(bench: &Bench<'_>, point: &Point) -> Judgement {
     let texel = |c: f32| (f64::from(c) * size).floor();
     let (x, y) = (texel(at.coordinates.x), texel(at.coordinates.y));
     let depth = match at.mapped {
-        true => bench.maps.depths[bench.maps.index(x as i64, y as i64, at.layer)],
+        true => bench.maps.depth(bench.maps.index(x as i64, y as i64, at.layer)),
         false => 1.0,
     };
     let stored = match depth < 1.0 {
         true => bench.distance(f64::from(depth), texel_place(bench, [x + 0.5, y + 0.5])),
         false => f64::INFINITY,
     };
-    let unmapped = !at.mapped; // dark by definition, and so in truth
+    let unmapped = !bench.is_mapped(point); // dark by definition, and so in truth
     let occluder = bench.occluder(point);
     let own = p.length();
     let [near, far] = bench.clip(point.world - bench.origin);

@@ -79,6 +79,8 @@ pub struct Search<'b> {
     pub tau: f64,
     /// Smallest jump that counts, of the distance: [`JUMP`] where maps are judged.
     pub jump: f64,
+    /// Where rays begin: at near where maps are judged, at the light where shadows are.
+    pub from_light: bool,
 }
 
 impl Search<'_> {
@@ -183,7 +185,9 @@ impl Search<'_> {
     /// The first hit along a unit direction.
     pub fn sample(&self, direction: DVec3) -> Sample {
         let bench = self.bench;
-        let hit = bench.first_hit(direction).map(|hit| (hit, bench.normal(hit.triangle)));
+        let hit = bench
+            .first_hit(direction, self.from_light)
+            .map(|hit| (hit, bench.normal(hit.triangle)));
         Sample { direction, hit }
     }
 

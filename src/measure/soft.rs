@@ -99,7 +99,7 @@ pub fn soft_coverage(bench: &Bench<'_>, point: &Point, radius: f64) -> f64 {
         if height(from) * centre >= 0.0 {
             taken += 1;
             let inside = within_sphere(from - bench.origin, point.world - from, radius);
-            lit += u32::from(bench.truth.sees(from, point.world, point.triangle, inside));
+            lit += u32::from(bench.casters().sees(from, point.world, point.triangle, inside));
         }
     }
     f64::from(lit) / f64::from(taken.max(1))

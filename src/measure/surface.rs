@@ -64,7 +64,7 @@ impl<'b> Neighbourhood<'b> {
     fn new(bench: &'b Bench<'b>, point: &'b Point, triangle: u32, footprint: &Footprint) -> Self {
         let (_, uv) = bench.place(point);
         let pitch = bench.pitch(uv);
-        let search = Search { bench, tau: 0.0, jump: JUMP * pitch };
+        let search = Search { bench, tau: 0.0, jump: JUMP * pitch, from_light: true };
         let side = footprint.rays();
         let cast = |i| search.sample(footprint.direction(bench, i, side).normalize());
         let rays = (0..side * side).map(cast).collect();

@@ -26,6 +26,8 @@ pub enum Reason {
     Bounds,
     /// It is farther from the light than everything that shows.
     Beyond,
+    /// It is asked to cast no shadow.
+    Switched,
 }
 
 /// The casters of some lights.
@@ -39,8 +41,9 @@ pub struct Casters {
     pub far: f32,
 }
 
-/// Finds them. Only a mesh that no view can see is no receiver; without views all are.
-pub fn casters(scene: &Scene, lights: &[Vec3], views: &[View]) -> Casters {
+/// Finds them, `no_cast` those of the scene's meshes that are asked to cast no shadow. Only a mesh that
+/// no view can see is no receiver; without views all are.
+pub fn casters(scene: &Scene, no_cast: &[bool], lights: &[Vec3], views: &[View]) -> Casters {
     let shows = |mesh: &&Mesh| views.is_empty() || views.iter().any(|view| may_see(view, mesh));
     let receivers: Vec<&Mesh> = scene.meshes.iter().filter(shows).collect();
     let points = || receivers.iter().flat_map(|mesh| &mesh.positions).map(|p| p.as_dvec3());
@@ -48,7 +51,10 @@ pub fn casters(scene: &Scene, lights: &[Vec3], views: &[View]) -> Casters {
     let farthest = |light: &DVec3| points().map(|point| point.distance(*light)).fold(0.0, f64::max);
     let reaches: Vec<f64> = lights.iter().map(farthest).collect();
     let largest = points().map(|point| point.abs().max_element()).fold(0.0, f64::max);
-    let reason = |mesh: &Mesh| {
+    let reason = |(index, mesh): (usize, &Mesh)| {
+        if no_cast.get(index) == Some(&true) {
+            return Some(Reason::Switched);
+        }
         let beyond = |(light, reach): (&DVec3, &f64)| nearest(mesh, *light) > *reach;
         if lights.iter().zip(&reaches).all(beyond) {
             return Some(Reason::Beyond);
@@ -56,7 +62,7 @@ pub fn casters(scene: &Scene, lights: &[Vec3], views: &[View]) -> Casters {
         let bounds = |light: &DVec3| bounds(mesh, *light, &receivers, ON_PLANE * largest);
         lights.iter().all(bounds).then_some(Reason::Bounds)
     };
-    let left_out: Vec<Option<Reason>> = scene.meshes.iter().map(reason).collect();
+    let left_out: Vec<Option<Reason>> = scene.meshes.iter().enumerate().map(reason).collect();
     let kept = || scene.meshes.iter().zip(&left_out).filter(|(_, out)| out.is_none());
     let smallest = f64::from(SMALLEST);
     let far = reaches.iter().fold(2.0 * smallest, |far, reach| reach.max(far)) * FAR_SLACK;

@@ -6,9 +6,9 @@ use super::Sample;
 use super::axis::Axis;
 use super::cost::{EXACT, Rates, generation};
 use crate::render::{Format, guard_band};
-use crate::scalar::bias::dpsm_bias_slack;
+use crate::scalar::bias::{DPSM_RECEIVER_ROUNDING, dpsm_bias_slack};
 use crate::scalar::float as scalar;
-use crate::scalar::light::DpsmLight;
+use crate::scalar::light::{DPSM_FORWARD, DpsmLight};
 use crate::scalar::plane::{DPSM_PLANE_DARK, DPSM_PLANE_ROUNDING, DPSM_PLANE_SHIFT};
 
 /// Sizes from what the edges ask for to so many times as much are tried: a finer map sees what is
@@ -93,8 +93,8 @@ pub fn undecided(incidence: f64, pitch: f64) -> [f64; 2] {
     let cosine = incidence.max(f64::MIN_POSITIVE);
     let sine = (1.0 - cosine * cosine).sqrt();
     // n . d grows by the move and by half a texel; the plane is nearer in inverse proportion
-    let grown =
-        pitch * (DPSM_PLANE_DARK + DPSM_PLANE_SHIFT * sine / cosine) + DPSM_PLANE_ROUNDING / cosine;
+    let rounding = DPSM_RECEIVER_ROUNDING + DPSM_PLANE_ROUNDING;
+    let grown = pitch * (DPSM_PLANE_DARK + DPSM_PLANE_SHIFT * sine / cosine) + rounding / cosine;
     [1.0 - 1.0 / (1.0 + grown), 1.0 - 1.0 / (1.0 + DPSM_PLANE_DARK * pitch)]
 }
 
@@ -138,11 +138,18 @@ impl Case<'_> {
         let next = |size: &u32| Some(size + step(*size)).filter(|size| *size <= most);
         let mut found = Vec::new();
         for size in std::iter::successors(Some(least), next) {
-            for format in [Format::D16, Format::D32] {
-                found.push(self.candidate(index, axis, size, format));
-            }
+            let formats = [Format::D16, Format::D32].into_iter();
+            let fine = formats.filter(|format| self.is_fine(size, *format));
+            found.extend(fine.map(|format| self.candidate(index, axis, size, format)));
         }
         found
+    }
+
+    /// True where a step of a format is no wider than a texel at the nearest caster.
+    pub fn is_fine(&self, size: u32, format: Format) -> bool {
+        let light = self.light(size);
+        let texel = 2.0 * (1.0 + light.guard) / light.size;
+        f64::from(format.quantum()) * (light.far - light.near) <= texel * light.near
     }
 
     /// One candidate, whatever its error.
@@ -198,7 +205,7 @@ impl Case<'_> {
             first_layer: 0,
             placement: 0,
             hemispheres: 2,
-            padding: 0,
+            reversed: DPSM_FORWARD,
         }
     }
 }

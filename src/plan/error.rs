@@ -14,6 +14,14 @@ pub enum PlanError {
     /// Not even the smallest maps fit.
     #[error("the smallest maps do not fit the budget; raise --budget")]
     Budget,
+    /// An error as large as the scene.
+    #[error("an error of {error} is {than}: no shadow is left to be right; give a smaller --error")]
+    Target {
+        /// What was asked for.
+        error: String,
+        /// What it is compared with.
+        than: String,
+    },
     /// A plan of another version.
     #[error(
         "a plan of version {0}, not {version}; make it again with `dpsm plan`",

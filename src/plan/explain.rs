@@ -42,16 +42,22 @@ pub fn explained(
 ) -> Plan {
     let axis = &axes[best.axis];
     let left_out_meshes = left_out.iter().zip(&request.scene.meshes).enumerate();
-    let left_out_meshes = left_out_meshes
-        .filter(|(_, (reason, _))| reason.is_some())
-        .map(|(mesh, (_, of))| LeftOut { mesh, name: of.name.clone() });
+    let left_out_meshes =
+        left_out_meshes.filter(|(_, (reason, _))| reason.is_some()).map(|(mesh, (reason, of))| {
+            let no_cast = *reason == Some(Reason::Switched);
+            LeftOut { mesh, name: of.name.clone(), no_cast }
+        });
     let error = |share: f64| request.error.value() * share;
     let mut plan = Plan {
         version: VERSION,
         scene: request.scene.name.clone(),
         meshes: request.scene.meshes.len(),
         triangles: request.scene.triangle_count(),
-        lights: request.lights.iter().map(|light| light.to_array()).collect(),
+        lights: request
+            .lights
+            .iter()
+            .map(|light| request.scene.in_file(*light).to_array())
+            .collect(),
         error: request.error,
         axis: axis.axis.as_vec3().to_array(),
         hemispheres: axis.maps,
@@ -199,6 +205,7 @@ fn casters(request: &Request<'_>, left_out: &[Option<Reason>]) -> Choice {
     for (reason, because) in [
         (Reason::Bounds, "nothing that shows lies behind"),
         (Reason::Beyond, "farther than all that shows:"),
+        (Reason::Switched, "to cast no shadow:"),
     ] {
         let names = named(reason);
         if !names.is_empty() {
@@ -224,7 +231,10 @@ fn format_line(case: &Case<'_>, candidates: &[Candidate], best: &Candidate) -> C
         true => format!("a step is {step:.1e}, the thinnest gap that must hold {thinnest:.1e}"),
         false => "no gap must hold".into(),
     };
-    if best.format == Format::D32 {
+    if !case.is_fine(best.size, Format::D16) {
+        let step = f64::from(Format::D16.quantum()) * f64::from(case.spheres[1] - case.spheres[0]);
+        why += &format!("; a step of d16 is {step:.1e}, wider than a texel at the nearest caster");
+    } else if best.format == Format::D32 {
         let d16 = cheapest(candidates, |c| c.format == Format::D16);
         why += &format!("; d16 would be {}", instead(best, d16));
     }

@@ -36,7 +36,7 @@ pub use target::{TEXEL_OF, Target};
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::measure::{Bench, Point, truth_of, truth_of_casters};
+use crate::measure::{Bench, Point, truth_of, truth_of_drawn};
 use crate::render::{Bias, Casting, Filter, Format, Frame, Method, Settings, View};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{Camera, Light, Scene};
@@ -59,6 +59,8 @@ const DOWN: Vec3 = Vec3::NEG_Y;
 pub struct Request<'a> {
     /// The scene.
     pub scene: &'a Scene,
+    /// Of each of its meshes, whether it is to cast no shadow; may be empty.
+    pub no_cast: Vec<bool>,
     /// Positions of the light: one, or a path's.
     pub lights: Vec<Vec3>,
     /// The axis of a hemispherical light.
@@ -83,6 +85,7 @@ impl<'a> Request<'a> {
         let Light { position, axis, .. } = scene.default_light();
         Self {
             scene,
+            no_cast: Vec::new(),
             lights: vec![position],
             axis,
             camera: None,
@@ -102,6 +105,9 @@ pub struct LeftOut {
     pub mesh: usize,
     /// Its name.
     pub name: String,
+    /// It is to cast no shadow; the others' shadows are not seen.
+    #[serde(default)]
+    pub no_cast: bool,
 }
 
 /// Settings that keep a target, and why; the contents of a plan file.
@@ -115,8 +121,8 @@ pub struct Plan {
     pub meshes: usize,
     /// Triangles of the scene.
     pub triangles: usize,
-    /// Positions of the light that it was made for.
-    pub lights: Vec<[f32; 3]>,
+    /// Positions of the light that it was made for, in the coordinates of the scene's file.
+    pub lights: Vec<[f64; 3]>,
     /// The target.
     pub error: Target,
     /// The maps' axis, unit.
@@ -155,9 +161,11 @@ pub struct Plan {
 /// See [`PlanError`].
 pub fn plan(request: &Request<'_>) -> Result<Plan, PlanError> {
     let view = request.camera.map(|camera| View::new(&camera, request.image)).transpose()?;
+    check_target(request)?;
     // meshes and lights are checked before they are looked at
     frames(request, &[])?;
-    let Casters { left_out, near, far } = casters(request.scene, &request.lights, view.as_slice());
+    let Casters { left_out, near, far } =
+        casters(request.scene, &request.no_cast, &request.lights, view.as_slice());
     let frames = frames(request, &left_out)?;
     let samples = samples(request, &frames);
     if samples.is_empty() {
@@ -229,7 +237,7 @@ impl Plan {
         let mut casting = vec![Casting::By(method); self.meshes];
         for out in &self.left_out {
             if let Some(mesh) = casting.get_mut(out.mesh) {
-                *mesh = Casting::LeftOut;
+                *mesh = if out.no_cast { Casting::LeftOut } else { Casting::Unseen };
             }
         }
         Ok(Settings {
@@ -255,6 +263,19 @@ impl Plan {
     }
 }
 
+/// Refuses errors beyond the scene's size, or beyond the angle that any map keeps.
+fn check_target(request: &Request<'_>) -> Result<(), PlanError> {
+    let size = f64::from(request.scene.bounds().extent().length());
+    let than = match request.error {
+        Target::Units(units) if units > size => format!("more than the scene's size, {size:.3}"),
+        Target::Texels(_) | Target::Degrees(_) if request.error.is_capped() => {
+            "more than 45 degrees".into()
+        }
+        _ => return Ok(()),
+    };
+    Err(PlanError::Target { error: request.error.to_string(), than })
+}
+
 /// Candidates of the largest sizes that a budget holds.
 fn within_budget(request: &Request<'_>, case: &Case<'_>, axes: &[Axis]) -> Vec<Candidate> {
     let most = request.budget.unwrap_or(u64::MAX);
@@ -263,7 +284,8 @@ fn within_budget(request: &Request<'_>, case: &Case<'_>, axes: &[Axis]) -> Vec<C
         for format in [Format::D16, Format::D32] {
             let texels = most / (u64::from(axis.maps) * choose::texel_bytes(format));
             let size = choose::ladder_below((texels as f64).sqrt());
-            found.extend(size.map(|size| case.candidate(index, axis, size, format)));
+            let fine = size.filter(|size| case.is_fine(*size, format));
+            found.extend(fine.map(|size| case.candidate(index, axis, size, format)));
         }
     }
     found
@@ -311,7 +333,8 @@ fn frames(
         vertical_fov: 1.0,
     });
     let casting = |reason: &Option<casters::Reason>| match reason {
-        Some(_) => Casting::LeftOut,
+        Some(casters::Reason::Switched) => Casting::LeftOut,
+        Some(_) => Casting::Unseen,
         None => Casting::By(Method::Exact),
     };
     let casting = left_out.iter().map(casting).collect();
@@ -327,7 +350,7 @@ fn frames(
 
 /// The receivers of all lights; those behind a hemispherical light are dark by definition.
 fn samples(request: &Request<'_>, frames: &[Frame]) -> Vec<Sample> {
-    let (truth, casters) = (truth_of(&frames[0]), truth_of_casters(&frames[0]));
+    let (truth, casters) = (truth_of(&frames[0]), truth_of_drawn(&frames[0]));
     let count = POINTS.div_ceil(frames.len());
     let mut samples = Vec::new();
     for (seed, frame) in (request.seed..).zip(frames) {

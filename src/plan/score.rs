@@ -170,7 +170,7 @@ impl<'a> Proof<'a> {
             (Bias::Plane, _) => {
                 // the four around the receiver that is moved along its normal
                 let (p, normal) = bench.receiver(point);
-                let receiver = dpsm_receiver(p.widen(), normal.widen());
+                let receiver = dpsm_receiver(p.widen(), normal.widen(), 0.0);
                 let at = dpsm_plane(p.widen(), receiver, DPSM_PLANE_SHIFT, light, 0.0, 0.0);
                 (dpsm_plane_four(at, light).xy(), 2)
             }

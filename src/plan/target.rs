@@ -46,6 +46,15 @@ impl Target {
         angle.min(FRAC_PI_4)
     }
 
+    /// True of an angle of more than 45 degrees.
+    pub fn is_capped(self) -> bool {
+        match self {
+            Self::Texels(texels) => texels * texel() > FRAC_PI_4,
+            Self::Units(_) => false,
+            Self::Degrees(degrees) => degrees.to_radians() > FRAC_PI_4,
+        }
+    }
+
     /// The number before the unit.
     pub fn value(self) -> f64 {
         let (Self::Texels(value) | Self::Units(value) | Self::Degrees(value)) = self;

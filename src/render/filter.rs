@@ -1,7 +1,7 @@
 //! The frame's filters by the ports, and what the camera pass is told of them.
 
 use super::{Filter, Frame, Kernel, Taps};
-use crate::scalar::bias::{dpsm_bias_footprint, dpsm_bias_slack, dpsm_receiver};
+use crate::scalar::bias::{dpsm_bias_footprint, dpsm_bias_slack};
 use crate::scalar::filter::{
     DPSM_TAP_HARD, DPSM_TAP_LINEAR, DpsmTaps, dpsm_filter_disk, dpsm_filter_mirror,
     dpsm_filter_pcf, dpsm_filter_reproject,
@@ -33,7 +33,7 @@ impl Frame {
                 Sampling::Nearest => DPSM_TAP_HARD,
                 Sampling::Linear => DPSM_TAP_LINEAR,
             },
-            quantum: self.settings.format.quantum(),
+            quantum: self.settings.quantum(),
             tolerance,
         }
     }
@@ -78,7 +78,7 @@ impl Frame {
         rotation: Vec2<f32>,
     ) -> f32 {
         let light = self.light;
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = self.receiver(p, normal);
         let taps = self.taps();
         let first = Vec2::new(1.0, 0.0);
         match self.settings.filter {

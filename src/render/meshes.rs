@@ -72,6 +72,19 @@ impl Frame {
         drawn
     }
 
+    /// True where some mesh casts no shadow.
+    pub fn has_left_out(&self) -> bool {
+        self.castings.iter().any(|(_, casting)| *casting == Casting::LeftOut)
+    }
+
+    /// True of a triangle whose mesh casts no shadow.
+    pub fn is_left_out(&self, triangle: u32) -> bool {
+        let out = |(range, casting): &(Range<u32>, Casting)| {
+            *casting == Casting::LeftOut && range.contains(&triangle)
+        };
+        self.castings.iter().any(out)
+    }
+
     /// The mask of a triangle's mesh.
     pub fn mask(&self, triangle: u32) -> Option<&Mask> {
         let index = self.masks.partition_point(|(range, _)| range.end <= triangle);

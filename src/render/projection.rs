@@ -2,14 +2,15 @@
 
 use super::{Bias, Filter, Frame, Method};
 use crate::scalar::bias::{
-    dpsm_bias_footprint, dpsm_lookup_biased, dpsm_lookup_texel_centre, dpsm_receiver,
+    DpsmReceiver, dpsm_bias_footprint, dpsm_lookup_biased, dpsm_lookup_texel_centre,
+    dpsm_position_error, dpsm_receiver,
 };
 use crate::scalar::cube::{
     dpsm_cube_depth, dpsm_cube_distance, dpsm_cube_face, dpsm_cube_lookup,
     dpsm_cube_lookup_footprint, dpsm_cube_lookup_texel_centre, dpsm_cube_receiver_depth,
     dpsm_cube_unview, dpsm_cube_view,
 };
-use crate::scalar::depth::{dpsm_distance, dpsm_receiver_depth};
+use crate::scalar::depth::{dpsm_depth_stored, dpsm_distance, dpsm_receiver_depth};
 use crate::scalar::float::{Float, Vec2, Vec3};
 use crate::scalar::hemisphere::{dpsm_flip, dpsm_hemisphere};
 use crate::scalar::light::DpsmLight;
@@ -51,6 +52,13 @@ impl Frame {
         self.visibility_turned(maps, p, normal, Vec2::new(1.0, 0.0))
     }
 
+    /// The receiver at a light-space position, which the world's rounding may have moved.
+    pub fn receiver(&self, p: Vec3<f32>, normal: Vec3<f32>) -> DpsmReceiver<f32> {
+        let DpsmLight { position, right, up, forward, .. } = self.light;
+        let world = position + right * p.x + up * p.y + forward * p.z;
+        dpsm_receiver(p, normal, dpsm_position_error(world))
+    }
+
     /// The same where a kernel's first tap has a direction of its own, a unit vector.
     pub fn visibility_turned(
         &self,
@@ -62,9 +70,9 @@ impl Frame {
         if self.settings.filter != Filter::Single {
             return self.filtered(maps, p, normal, rotation);
         }
-        let (light, quantum) = (self.light, self.settings.format.quantum());
+        let (light, quantum) = (self.light, self.settings.quantum());
         let [_, tolerance] = self.settings.tolerances();
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = self.receiver(p, normal);
         match self.settings.bias_taken() {
             Bias::Plane => {
                 return dpsm_visibility_plane(maps, p, receiver, light, quantum, tolerance);
@@ -76,7 +84,10 @@ impl Frame {
         }
         let at = self.lookup(p, normal);
         match at.mapped {
-            true => maps.compare(at.coordinates, at.layer, at.depth),
+            true => {
+                let reference = dpsm_depth_stored(at.depth, light.reversed);
+                maps.compare(at.coordinates, at.layer, reference)
+            }
             false => 0.0,
         }
     }
@@ -85,9 +96,9 @@ impl Frame {
     /// and `Normal`, which compare several, that of their texels' footprint.
     pub fn lookup(&self, p: Vec3<f32>, normal: Vec3<f32>) -> DpsmLookup<f32> {
         let (settings, light) = (&self.settings, self.light);
-        let quantum = settings.format.quantum();
+        let quantum = settings.quantum();
         let [_, tolerance] = settings.tolerances();
-        let receiver = dpsm_receiver(p, normal);
+        let receiver = self.receiver(p, normal);
         let texels = settings.window();
         match settings.method.projection() {
             Projection::Paraboloid => {
@@ -124,7 +135,8 @@ impl Frame {
     pub fn distances(&self, maps: &DepthMaps, layer: u32) -> impl Iterator<Item = f32> {
         let (size, light) = (maps.size as usize, self.light);
         let projection = self.settings.method.projection();
-        maps.layer(layer).iter().enumerate().map(move |(index, &depth)| {
+        (0..size * size).map(move |index| {
+            let depth = maps.depth(layer as usize * size * size + index);
             if depth >= 1.0 {
                 return f32::INFINITY;
             }

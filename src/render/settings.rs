@@ -58,8 +58,10 @@ pub enum Method {
 pub enum Casting {
     /// Drawn by this method.
     By(Method),
-    /// Not drawn: it shadows nothing that is seen.
+    /// It casts no shadow, in the maps and by rays: a bulb, a lamp's shade, or what only receives.
     LeftOut,
+    /// Not drawn, as nothing that is seen lies in its shadow; by rays it casts one all the same.
+    Unseen,
 }
 
 impl Casting {
@@ -67,7 +69,7 @@ impl Casting {
     pub fn method(self) -> Option<Method> {
         match self {
             Self::By(method) => Some(method),
-            Self::LeftOut => None,
+            Self::LeftOut | Self::Unseen => None,
         }
     }
 }
@@ -228,6 +230,9 @@ pub struct Settings {
     pub size: u32,
     /// Storage of the maps.
     pub format: Format,
+    /// Whether the maps hold 1 less each depth and are compared with greater-equal, as renderers
+    /// with reversed depth have it; paraboloid maps only.
+    pub reversed: bool,
     /// How the maps are made: which maps a light has, and who draws the meshes without a casting.
     pub method: Method,
     /// What each mesh is in the maps: one for each of the scene's meshes, in the scene's order;
@@ -263,7 +268,8 @@ pub struct Settings {
     pub terminator: bool,
     /// The factor on linear light; by default what [`exposure`](super::exposure) finds.
     pub exposure: Option<f32>,
-    /// Near sphere's radius; by default a thousandth of far.
+    /// Near sphere's radius; by default as small as can be, and for a cube the nearest caster's
+    /// distance, from a thousandth of far to where a step of the format at far is a texel wide.
     pub near: Option<f32>,
     /// Far sphere's radius; by default just beyond the farthest vertex.
     pub far: Option<f32>,
@@ -278,6 +284,7 @@ impl Default for Settings {
         Self {
             size: 1024,
             format: Format::D32,
+            reversed: false,
             method: Method::Hybrid,
             casting: Vec::new(),
             tau: 1.0 / 32.0,
@@ -300,6 +307,9 @@ impl Default for Settings {
         }
     }
 }
+
+/// Step of the floats below 1.
+const REVERSED_STEP: f32 = 1.0 / (1 << 24) as f32;
 
 /// Brabec's constant bias in units of depth: what a receiver at the far sphere needs at 45 degrees
 /// incidence, half a texel's diagonal off, sqrt(2) / 2 texel of 4 (1 + guard) / N rad, plus one
@@ -324,6 +334,21 @@ impl Settings {
             Method::Cube => (self.size / 2).max(1),
             _ => self.size,
         }
+    }
+
+    /// Marks those of a scene's meshes that cast no shadow.
+    pub fn leave_out(&mut self, no_cast: &[bool]) {
+        if no_cast.contains(&true) && self.casting.is_empty() {
+            self.casting = vec![Casting::By(self.method); no_cast.len()];
+        }
+        for (casting, _) in self.casting.iter_mut().zip(no_cast).filter(|(_, out)| **out) {
+            *casting = Casting::LeftOut;
+        }
+    }
+
+    /// Step of the stored values: the format's, and of reversed ones what 1 less a depth is rounded by.
+    pub fn quantum(&self) -> f32 {
+        self.format.quantum() + if self.reversed { REVERSED_STEP } else { 0.0 }
     }
 
     /// The methods that draw meshes.

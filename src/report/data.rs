@@ -82,8 +82,8 @@ pub struct SceneFigures {
     pub about: String,
     /// Triangles.
     pub triangles: usize,
-    /// The light's position.
-    pub light: [f32; 3],
+    /// The light's position, in the coordinates of the scene's file.
+    pub light: [f64; 3],
     /// True of a light with one hemisphere.
     pub hemispherical: bool,
     /// Points that were judged, seen by the camera.

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::data::{Curves, ErrorFigures, Image, SceneFigures, Source, Times};
@@ -13,7 +13,7 @@ use super::{pareto, pictures};
 use crate::gpu::{Device, GpuError};
 use crate::measure::{self, Bench, Point, SeenError, ShadowError};
 use crate::plan::PlanError;
-use crate::render::{Frame, FrameError, Method, Settings};
+use crate::render::{Frame, FrameError, Method, Settings, Shine};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{BUILT_IN, Camera, Light, Scene, SceneError};
 
@@ -58,15 +58,17 @@ pub struct Subject {
     pub light: Light,
     /// What sees the points.
     pub camera: Camera,
+    /// Of each of the scene's meshes, whether it casts no shadow; may be empty.
+    pub no_cast: Vec<bool>,
 }
 
 impl Subject {
-    /// A scene with its own light, or one that is given, and its own camera.
-    pub fn new(scene: Scene, light: Option<Vec3>) -> Self {
+    /// A scene with its own light, or one that is given in the file's coordinates, and its own camera.
+    pub fn new(scene: Scene, light: Option<DVec3>) -> Self {
         let own = scene.default_light();
-        let light = light.map_or(own, |position| Light { position, axis: None, cone: None, ..own });
+        let light = light.map_or(own, |position| own.moved(scene.local(position)));
         let camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
-        Self { name: scene.name.clone(), scene, light, camera }
+        Self { name: scene.name.clone(), scene, light, camera, no_cast: Vec::new() }
     }
 
     /// The frame of some settings.
@@ -82,8 +84,10 @@ impl Subject {
     ) -> Result<Frame, FrameError> {
         let Light { position, axis, color, .. } = self.light;
         let (axis, one) = around.unwrap_or((axis.unwrap_or(Vec3::NEG_Y), axis.is_some()));
-        let frame = Frame::new(&self.scene, position, axis, one, &self.camera, settings.clone())?;
-        Ok(Frame { color, ..frame })
+        let mut settings = settings.clone();
+        settings.leave_out(&self.no_cast);
+        let frame = Frame::new(&self.scene, position, axis, one, &self.camera, settings)?;
+        Ok(Frame { color, shine: Shine::of(&self.light), ..frame })
     }
 
     /// Refuses what no frame can be made of.
@@ -95,6 +99,7 @@ impl Subject {
     pub fn hash(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         format!("{} {:?} {:?}", self.name, self.light, self.camera).hash(&mut hasher);
+        self.no_cast.hash(&mut hasher);
         for mesh in &self.scene.meshes {
             let words =
                 |v: &[Vec3]| v.iter().flat_map(|v| v.to_array()).map(f32::to_bits).collect();
@@ -226,7 +231,7 @@ pub fn scene(job: &Job<'_>, subject: &Subject) -> Result<Part, ReportError> {
         name: subject.name.clone(),
         about: subject.about(),
         triangles: frame.triangles.len(),
-        light: subject.light.position.to_array(),
+        light: subject.scene.in_file(subject.light.position).to_array(),
         hemispherical: subject.light.axis.is_some(),
         points: points.len(),
         seed: effort.seed,

@@ -47,6 +47,7 @@ const ERROR: Target = Target::Texels(0.5);
 /// Plans for what the scene's camera sees of its light.
 pub fn planned(subject: &Subject, effort: &Effort) -> Result<Planned, PlanError> {
     let request = Request {
+        no_cast: subject.no_cast.clone(),
         lights: vec![subject.light.position],
         axis: subject.light.axis,
         camera: Some(subject.camera),

@@ -141,7 +141,24 @@ impl Bounds {
     }
 }
 
+impl Light {
+    /// The same light elsewhere: it shines everywhere and without limit unless told otherwise.
+    pub fn moved(self, position: Vec3) -> Self {
+        Self { position, axis: None, cone: None, range: None, ..self }
+    }
+}
+
 impl Scene {
+    /// A point of the file's coordinates in the scene's own.
+    pub fn local(&self, point: DVec3) -> Vec3 {
+        (point - self.origin).as_vec3()
+    }
+
+    /// A point of the scene in the file's coordinates.
+    pub fn in_file(&self, point: Vec3) -> DVec3 {
+        in_file(point, self.origin)
+    }
+
     /// The smallest box around all positions; a point at the origin if there are none.
     pub fn bounds(&self) -> Bounds {
         let positions = || self.meshes.iter().flat_map(|mesh| &mesh.positions).copied();
@@ -163,6 +180,17 @@ impl Scene {
             mesh.triangles.iter().map(move |corners| corners.map(corner))
         })
     }
+}
+
+/// A local point in coordinates whose origin lies at `origin`: where that is 0, the decimal number that
+/// the float was rounded from, as nearly as a float tells.
+pub(crate) fn in_file(point: Vec3, origin: DVec3) -> DVec3 {
+    let decimal = |c: f32| c.to_string().parse::<f64>().unwrap_or(c.into());
+    let sum = |local: f32, origin: f64| match origin {
+        0.0 => decimal(local),
+        origin => f64::from(local) + origin,
+    };
+    DVec3::new(sum(point.x, origin.x), sum(point.y, origin.y), sum(point.z, origin.z))
 }
 
 /// What [`open`] may vary.

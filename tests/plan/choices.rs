@@ -8,7 +8,7 @@ use dpsm::render::{Bias, Casting, Filter, Format, Method, Settings};
 use dpsm::scene::Camera;
 use glam::{DVec3, Vec3, vec3};
 
-use super::{built_in, floor_and_board, planned, target};
+use super::{built_in, floor_and_board, planned, square, target};
 
 /// A plan from its file. serde_json may round the last digit of a number of 17, such as a time.
 fn read_back(plan: &Plan) -> Plan {
@@ -134,6 +134,37 @@ fn thin_gaps_forbid_coarse_formats() {
 }
 
 #[test]
+fn steps_wider_than_a_texel_at_the_nearest_caster_ask_for_floats() {
+    // a hood 5 cm from the light over a floor of 2 km: no gap must hold, but a step of d16 is 2 cm
+    let scene = |far: f32| {
+        let mut scene = built_in("cornell");
+        scene.meshes = vec![square("floor", far, -2.0), square("hood", 0.05, -0.05)];
+        scene.lights[0].position = Vec3::ZERO;
+        scene.camera = None;
+        scene
+    };
+    let format = |far| {
+        let plan = plan(&Request::new(&scene(far), target("0.5texel"))).unwrap();
+        let line = plan.choices.iter().find(|choice| choice.what == "format").unwrap();
+        (plan.format.clone(), line.why.contains("wider than a texel at the nearest caster"))
+    };
+    assert_eq!(format(1000.0), ("d32".to_string(), true));
+    assert_eq!(format(2.0), ("d16".to_string(), false));
+}
+
+#[test]
+fn errors_as_large_as_the_scene_are_refused() {
+    let scene = built_in("cornell");
+    let size = f64::from(scene.bounds().extent().length());
+    let refused = |error: Target| plan(&Request::new(&scene, error));
+    for error in [Target::Units(1.01 * size), Target::Degrees(46.0), Target::Texels(400.0)] {
+        let Err(wrong @ PlanError::Target { .. }) = refused(error) else { panic!("{error}") };
+        assert!(wrong.to_string().contains("give a smaller --error"), "{wrong}");
+    }
+    assert!(refused(Target::Units(0.2 * size)).is_ok());
+}
+
+#[test]
 fn small_gaps_beside_a_receiver_count_as_its_own() {
     // half a texel is 0.01 wide here, and what may decide a third of the allowed angle away
     let wide = [0.1; 2];
@@ -203,7 +234,7 @@ fn plans_survive_a_file_and_become_settings() {
     assert_eq!(settings.format, Format::D16);
     assert_eq!(settings.method, Method::Exact);
     assert_eq!((settings.filter, settings.bias), (Filter::Single, Bias::Plane));
-    let out = settings.casting.iter().filter(|casting| **casting == Casting::LeftOut).count();
+    let out = settings.casting.iter().filter(|casting| **casting == Casting::Unseen).count();
     assert_eq!((out, settings.casting.len()), (6, scene.meshes.len()));
     assert_eq!(settings.casting[14], Casting::By(Method::Exact));
 }

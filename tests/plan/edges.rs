@@ -1,7 +1,7 @@
 //! Shadow edges: how far a lookup may be off, and how far planned maps are.
 
 use dpsm::cpu;
-use dpsm::measure::{Bench, Point, truth_of, truth_of_casters};
+use dpsm::measure::{Bench, Point, truth_of, truth_of_drawn};
 use dpsm::plan::axis::Judge;
 use dpsm::plan::choose::{moved, reach, undecided};
 use dpsm::plan::cost::{self, loads};
@@ -123,7 +123,7 @@ fn receiver(rng: &mut Rng, least: f64) -> (scalar::Vec3<f64>, DpsmReceiver<f64>)
         let [d, n] = [unit(rng), unit(rng)].map(|v| scalar::Vec3::new(v.x, v.y, v.z));
         let p = d * (1.0 + 8.0 * rng.f64());
         if d.dot(n).abs() >= least {
-            return (p, dpsm_receiver(p, n));
+            return (p, dpsm_receiver(p, n, 0.0));
         }
     }
 }
@@ -302,7 +302,7 @@ fn proof(scene: &Scene, light: Vec3, request: &Request<'_>, plan: &Plan) -> Wron
     let frame =
         Frame::new(scene, light, forward, plan.is_hemispherical(), &camera, settings).unwrap();
     let truth = truth_of(&frame);
-    let casters = truth_of_casters(&frame);
+    let casters = truth_of_drawn(&frame);
     let sights = [&truth, &casters].map(|truth| Sight { truth, origin: light.as_dvec3() });
     let empty = DepthMaps::empty(1, frame.light.hemispheres, Sampling::Nearest);
     let mut points = Bench::new(&frame, &empty, &truth).points_from_camera(6_000, 17);
@@ -347,12 +347,12 @@ fn a_shadow_edge_behind_a_wall_that_no_map_holds_counts() {
     }
     scene.meshes.push(wall);
     let light = vec3(0.0, 2.0, 0.0);
-    let [drawn, out] = [Casting::By(Method::Exact), Casting::LeftOut];
+    let [drawn, out] = [Casting::By(Method::Exact), Casting::Unseen];
     let casting = vec![drawn, drawn, out];
     let settings = Settings { method: Method::Exact, casting, ..Settings::default() };
     let camera = scene.camera.unwrap();
     let frame = Frame::new(&scene, light, Vec3::NEG_Y, false, &camera, settings).unwrap();
-    let (truth, casters) = (truth_of(&frame), truth_of_casters(&frame));
+    let (truth, casters) = (truth_of(&frame), truth_of_drawn(&frame));
     let sights = [&truth, &casters].map(|truth| Sight { truth, origin: light.as_dvec3() });
     // maps that hold nothing light all
     let empty = DepthMaps::empty(64, 2, Sampling::Nearest);

@@ -20,7 +20,7 @@ fn names(scene: &Scene, left_out: &[Option<Reason>]) -> Vec<String> {
 #[test]
 fn walls_of_a_convex_room_are_left_out_and_nothing_else() {
     let scene = built_in("brabec-room");
-    let found = casters(&scene, &[scene.default_light().position], &[]);
+    let found = casters(&scene, &[], &[scene.default_light().position], &[]);
     let walls: Vec<String> = scene.meshes[..6].iter().map(|mesh| mesh.name.clone()).collect();
     assert_eq!(names(&scene, &found.left_out), walls);
 }
@@ -39,7 +39,7 @@ fn no_ray_to_a_receiver_meets_what_is_left_out() {
             let light = bounds.min + bounds.extent() * (0.05 + 0.9 * random);
             let settings = Settings::default();
             let view = View::new(&camera, settings.image).unwrap();
-            let left_out = casters(&scene, &[light], &[view]).left_out;
+            let left_out = casters(&scene, &[], &[light], &[view]).left_out;
             counted += left_out.iter().flatten().count();
             let frame = Frame::new(&scene, light, Vec3::NEG_Y, false, &camera, settings).unwrap();
             let truth = truth_of(&frame);
@@ -48,7 +48,7 @@ fn no_ray_to_a_receiver_meets_what_is_left_out() {
             // only what is left out, at the places of the whole frame's triangles
             let casting = left_out.iter().map(|reason| match reason {
                 Some(_) => Casting::By(Method::Hybrid),
-                None => Casting::LeftOut,
+                None => Casting::Unseen,
             });
             let alone = Settings { casting: casting.collect(), ..Settings::default() };
             let alone = Frame::new(&scene, light, Vec3::NEG_Y, false, &camera, alone).unwrap();
@@ -78,11 +78,11 @@ fn a_mesh_beyond_all_that_shows_is_left_out() {
     scene.meshes.push(square("cloud", 1.0, 40.0));
     let camera = View::new(&scene.camera.unwrap(), [960, 720]).unwrap();
     let light = scene.default_light().position;
-    let found = casters(&scene, &[light], &[camera]).left_out;
+    let found = casters(&scene, &[], &[light], &[camera]).left_out;
     // the floor bounds all that shows; the board does not: the floor is behind it
     assert_eq!(found, [Some(Reason::Bounds), None, Some(Reason::Beyond)]);
     // where all surfaces count it is a receiver itself, and all that shows lies below it
-    assert_eq!(casters(&scene, &[light], &[]).left_out[2], Some(Reason::Bounds));
+    assert_eq!(casters(&scene, &[], &[light], &[]).left_out[2], Some(Reason::Bounds));
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn a_path_leaves_out_what_each_position_leaves_out() {
     let mut scene = floor_and_board(None);
     scene.meshes.push(square("shelf", 1.0, 3.0));
     let [below, above] = [vec3(0.1, 2.0, 0.2), vec3(0.1, 5.0, 0.2)];
-    let out = |lights: &[Vec3]| names(&scene, &casters(&scene, lights, &[]).left_out);
+    let out = |lights: &[Vec3]| names(&scene, &casters(&scene, &[], lights, &[]).left_out);
     assert_eq!(out(&[below]), ["floor", "shelf"]);
     assert_eq!(out(&[above]), ["floor"]);
     assert_eq!(out(&[below, above]), ["floor"]);
@@ -101,7 +101,7 @@ fn spheres_hold_every_caster_that_is_kept_and_every_receiver() {
     for (name, _) in BUILT_IN {
         let scene = built_in(name);
         let light = scene.default_light().position;
-        let found = casters(&scene, &[light], &[]);
+        let found = casters(&scene, &[], &[light], &[]);
         for (mesh, reason) in scene.meshes.iter().zip(&found.left_out) {
             for position in &mesh.positions {
                 let distance = position.distance(light);
