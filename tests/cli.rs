@@ -2,6 +2,8 @@
 
 #![cfg(feature = "cli")]
 
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -72,18 +74,36 @@ fn no_argument_reports_on_every_built_in_scene() {
 fn missing_adapter_falls_back_to_the_ports_and_says_so() {
     let folder = folder("no-adapter");
     let mut command = Command::new(env!("CARGO_BIN_EXE_dpsm"));
-    command.current_dir(&folder).env("WGPU_ADAPTER_NAME", "no such adapter");
+    // a back-end that this system has not
+    let missing = if cfg!(windows) { "metal" } else { "dx12" };
+    command.current_dir(&folder).env("WGPU_BACKEND", missing);
     let arguments = ["render", "cornell", "--size", "64", "--image", "32x24", "-o", "cornell.png"];
     let output = command.args(arguments).output().unwrap();
     let (stdout, stderr) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success(), "{stderr}");
-    assert!(stderr.contains("no usable adapter whose name contains `no such adapter`"), "{stderr}");
+    assert!(stderr.contains("no usable adapter of the back-end WGPU_BACKEND="), "{stderr}");
     assert!(stdout.contains("the scalar ports on the processor"), "{stdout}");
     assert_eq!(files(&folder), ["cornell.png"]);
 
     let output = command.args(["--adapter", "gpu"]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(text(&output.stderr).contains("--adapter cpu"), "the remedy is not named");
+}
+
+#[test]
+fn adapter_that_is_named_and_not_there_is_an_error_that_lists_those_that_are() {
+    let folder = folder("named-adapter");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_dpsm"));
+    command.current_dir(&folder).env("WGPU_ADAPTER_NAME", "no such adapter");
+    let output =
+        command.args(["render", "cornell", "--size", "64", "-o", "c.png"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let stderr = text(&output.stderr);
+    assert!(stderr.contains("no usable adapter whose name contains `no such adapter`"), "{stderr}");
+    if let Some(device) = common::device() {
+        assert!(stderr.contains(&device.info.name), "{stderr}");
+    }
+    assert!(files(&folder).is_empty());
 }
 
 #[test]
@@ -222,16 +242,146 @@ fn bad_settings_are_refused() {
     refused("views", &with(&["--passes", "multiview"]), &["hybrid", "--passes atlas", "vertex"]);
     refused("cube-views", &cube(&["--passes", "multiview"]), &["multiview", "--passes single"]);
     refused("passes", &with(&["--passes", "double"]), &["--passes", "atlas"]);
-    refused("level", &with(&["--level", "0"]), &["--level", "1..=64"]);
+    let level = ["--method", "tessellated", "--level", "0"];
+    refused("level", &with(&level), &["--level", "`0` is not from 1 to 64"]);
     refused("method-name", &with(&["--method", "vertx"]), &["vertex"]);
     refused("walls", &["render", "brabec-room", "--walls", "0", "-o", "o.png"], &["walls"]);
+    let whole = "`1e3` is not written as a whole number: give 1000";
+    refused("size-power", &with(&["--size", "1e3"]), &["--size", whole]);
+    refused("size-part", &with(&["--size", "10.5"]), &["--size", "`10.5` is not a whole number"]);
+    refused("size-most", &with(&["--size", "99999999999"]), &["--size", "4294967295"]);
+    refused("image-power", &with(&["--image", "1e3x10"]), &["--image", whole]);
     refused("same-point", &with(&["--camera", "0,0,0", "--look-at", "0,0,0"]), &["same point"]);
+}
+
+#[test]
+fn options_that_a_command_would_not_look_at_are_refused() {
+    let with = |extra: &[&'static str]| {
+        [&["render", "cornell", "--adapter", "cpu", "-o", "out.png"][..], extra].concat()
+    };
+    for (option, method) in [
+        (&["--level", "4"][..], "tessellated"),
+        (&["--tau", "0.1"][..], "hybrid"),
+        (&["--no-cull-faces"][..], "cube"),
+    ] {
+        let named = format!("{} is for --method {method}, not exact", option[0]);
+        let exact = [&["--method", "exact"][..], option].concat();
+        refused("option-of-another-method", &with(&exact), &[&named]);
+    }
+    for filter in ["disk", "mirror", "reproject", "pcss"] {
+        for bias in
+            [&["--bias", "footprint"][..], &["--bias", "plane"], &["--constant-bias", "0.01"]]
+        {
+            let named = format!("is not for --filter {filter}: give none");
+            let asked = [&["--filter", filter][..], bias].concat();
+            refused("bias-of-taps", &with(&asked), &[&named]);
+        }
+    }
+    let pcf = ["--filter", "pcf", "--bias", "plane"];
+    refused("bias-of-pcf", &with(&pcf), &["--bias plane is not for --filter pcf"]);
+    let folder = folder("walls-of-a-file");
+    let obj = folder.join("floor.obj");
+    std::fs::write(&obj, "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 2 3\n").unwrap();
+    let obj = obj.to_str().unwrap();
+    for scene in [obj, "hills"] {
+        for command in [
+            &["render", scene, "-o", "out.png"][..],
+            &["measure", scene],
+            &["plan", scene],
+            &["report", scene],
+        ] {
+            let arguments = [command, &["--walls", "2"]].concat();
+            refused("walls-of-none", &arguments, &["--walls is for built-in rooms", scene]);
+        }
+    }
+    refused("folder-of-none", &["--folder", "there", "modules"], &["--folder there", "-o"]);
+}
+
+#[test]
+fn meshes_that_are_to_cast_no_shadow_are_named_in_every_command() {
+    let folder = folder("no-cast");
+    std::fs::write(folder.join("below.csv"), "x,y,z\n0.1,0,0.1\n5,0,4\n").unwrap();
+    let obj = "o floor\nv -9 0 -9\nv -9 0 9\nv 9 0 9\nv 9 0 -9\nf 1 2 3 4\n\
+               o shade\nv -1 2 -1\nv -1 2 1\nv 1 2 1\nv 1 2 -1\nf 5 6 7 8\n";
+    std::fs::write(folder.join("lamp.obj"), obj).unwrap();
+    let lit = |extra: &[&str]| {
+        let common = ["probe", "lamp.obj", "--light", "0,3,0", "--points", "below.csv"];
+        let output =
+            dpsm(&folder, &[&common[..], &["--adapter", "cpu", "--size", "128"], extra].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let lines = text(&output.stdout);
+        let columns = |line: &str| {
+            let fields: Vec<&str> = line.split(',').collect();
+            format!("{} {}", fields[0], fields[6])
+        };
+        lines.lines().skip(1).map(columns).collect::<Vec<_>>()
+    };
+    assert_eq!(lit(&[]), ["0 0", "1 1"]);
+    assert_eq!(lit(&["--no-cast", "shade"]), ["1 1", "1 1"]);
+    // a plan remembers it
+    let plan = ["plan", "lamp.obj", "--light", "0,3,0", "--no-cast", "shade", "-o", "plan.json"];
+    let planned = dpsm(&folder, &plan);
+    assert!(planned.status.success(), "{}", text(&planned.stderr));
+    assert!(
+        text(&planned.stdout).contains("to cast no shadow: shade"),
+        "{}",
+        text(&planned.stdout)
+    );
+    let by_plan =
+        ["probe", "lamp.obj", "--plan", "plan.json", "--points", "below.csv", "--adapter", "cpu"];
+    let output = dpsm(&folder, &by_plan);
+    let lines = text(&output.stdout);
+    assert!(lines.lines().skip(1).all(|line| line.starts_with("1,")), "{lines}");
+    for command in [
+        &["render", "cornell", "-o", "o.png"][..],
+        &["measure", "cornell"],
+        &["bake", "cornell", "-o", "o.exr"],
+        &["plan", "cornell"],
+        &["report", "cornell"],
+    ] {
+        let arguments = [command, &["--no-cast", "tall blok"]].concat();
+        refused("no-cast-unknown", &arguments, &["--no-cast tall blok", "no"]);
+    }
+    let unknown = ["measure", "cornell", "--no-cast", "ceilin"];
+    refused("no-cast-nearest", &unknown, &["it has ceiling, "]);
+}
+
+#[test]
+fn what_near_or_far_cuts_off_is_named_by_the_commands() {
+    let folder = folder("clipped");
+    let common = ["--size", "64", "--adapter", "cpu", "--count", "50"];
+    let said = |extra: &[&str]| {
+        let output = dpsm(&folder, &[&["measure", "cornell"][..], &common, extra].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        text(&output.stderr)
+    };
+    assert!(!said(&[]).contains("cuts off"));
+    assert!(said(&["--near", "0.3"]).contains("near 3.000e-1 cuts off casters at the light: `"));
+    assert!(said(&["--far", "0.4"]).contains("far 4.000e-1 cuts off casters beyond it: `"));
+    assert!(said(&["--far", "1e5", "--format", "d16"]).contains("give --format d32"));
+}
+
+#[test]
+fn points_are_counted_by_one_option_everywhere() {
+    let folder = folder("counts");
+    for command in [
+        &["measure", "cornell", "--count", "0"][..],
+        &["report", "cornell", "--count", "0"],
+        &["eval", "--exhaustive", "--count", "0"],
+    ] {
+        let output = dpsm(&folder, command);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(text(&output.stderr).contains("--count"), "{}", text(&output.stderr));
+    }
 }
 
 #[test]
 fn unwritable_outputs_are_refused_and_nothing_is_half_written() {
     let render = |output| ["render", "cornell", "--adapter", "cpu", "--size", "64", "-o", output];
-    refused("no-folder", &render("missing/out.png"), &["missing/out.png", "-o"]);
+    let missing = ["missing/out.png", "there is no folder `missing`; make it", "-o"];
+    refused("no-folder", &render("missing/out.png"), &missing);
+    let bake = ["bake", "cornell", "--size", "64", "-o", "missing/maps.exr"];
+    refused("no-folder-bake", &bake, &["there is no folder `missing`"]);
     let folder = folder("is-folder");
     std::fs::create_dir(folder.join("out.png")).unwrap();
     let output = dpsm(&folder, &render("out.png"));
@@ -328,7 +478,7 @@ fn eval_compares_adapter_port_and_reference() {
 fn eval_searches_a_function_or_all_and_says_how_close_the_bound_is() {
     let folder = folder("eval-search");
     let search = |extra: &[&str]| {
-        let arguments = [&["eval", "--exhaustive", "--points", "500"], extra].concat();
+        let arguments = [&["eval", "--exhaustive", "--count", "500"], extra].concat();
         let output = dpsm(&folder, &arguments);
         text(&output.stdout).lines().map(String::from).collect::<Vec<_>>()
     };
@@ -343,7 +493,7 @@ fn eval_searches_a_function_or_all_and_says_how_close_the_bound_is() {
     assert_eq!(search(&[]).len(), 1 + dpsm::scalar::ports::PORTS.len());
     refused("eval-search-name", &["eval", "dpsm_projct", "--exhaustive"], &["`dpsm_project`"]);
     refused("eval-no-name", &["eval"], &["FUNCTION"]);
-    refused("eval-no-points", &["eval", "--exhaustive", "--points", "0"], &["--points"]);
+    refused("eval-no-points", &["eval", "--exhaustive", "--count", "0"], &["--count"]);
 }
 
 #[test]
@@ -479,8 +629,6 @@ fn measure_reports_the_same_in_a_table_and_in_json() {
         "500",
         "--seed",
         "5",
-        "--tau",
-        "0.25",
         "--method",
         "vertex",
         "--adapter",

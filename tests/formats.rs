@@ -154,7 +154,7 @@ fn found(device: &Device, depths: &[f32], format: Format, by: By, bias: f32) -> 
     let back = device.buffer("back", size, Usage::MAP_READ | Usage::COPY_DST).unwrap();
     let biases = [bias, format.quantum(), 0.0, 0.0];
     let biases = device.upload("bias", bytemuck::cast_slice(&biases), Usage::UNIFORM).unwrap();
-    let sampler = comparison_sampler(device, Sampling::Nearest).unwrap();
+    let sampler = comparison_sampler(device, Sampling::Nearest, false).unwrap();
     let entry = |binding, resource| wgpu::BindGroupEntry { binding, resource };
     let group = |layout: wgpu::BindGroupLayout, entries: &[wgpu::BindGroupEntry]| {
         gpu.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout: &layout, entries })

@@ -10,7 +10,7 @@ use dpsm::report::data::{Report, Role, Times, Variant};
 use dpsm::report::{NAGA, WGPU};
 
 /// Little work, of every kind.
-const QUICK: [&str; 8] = ["--size", "64", "--image", "48x36", "--points", "300", "--runs", "2"];
+const QUICK: [&str; 8] = ["--size", "64", "--image", "48x36", "--count", "300", "--runs", "2"];
 
 /// An empty folder of its own for each test.
 fn folder(name: &str) -> PathBuf {

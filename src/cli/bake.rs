@@ -8,7 +8,7 @@ use dpsm::render::Frame;
 use dpsm::scalar::maps::DepthMaps;
 
 use super::measure::{prepare, pretty};
-use super::output::{Outputs, print};
+use super::output::{Outputs, check_output, print};
 use super::setup::{Names, SetupArguments};
 use super::{AdapterChoice, CliError, describe};
 
@@ -58,6 +58,7 @@ impl BakeArguments {
 /// `dpsm bake`.
 pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), CliError> {
     arguments.check()?;
+    check_output(Some(&arguments.output))?;
     let (scene, frame, maps, device) = prepare(adapter, &arguments.setup)?;
     let path = &arguments.output;
     let beside = path.with_extension("json");
@@ -66,7 +67,7 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
     let names = Names::of(&frame.settings);
     let parameters = serde_json::json!({
         "scene": scene,
-        "position": vector(light.position),
+        "position": frame.in_file(light.position).to_array(),
         "right": vector(light.right),
         "up": vector(light.up),
         "forward": vector(light.forward),
@@ -75,6 +76,7 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "guard": light.guard,
         "size": maps.size,
         "hemispheres": light.hemispheres,
+        "reversed": light.reversed,
         "format": names.format,
         "method": names.method,
         "tau": names.tau,

@@ -13,7 +13,8 @@ use dpsm::reflect::{Component, Kind, Signature};
 use dpsm::scalar::ports::{self, Word};
 use dpsm::ulp::{ulps_apart, ulps_off};
 
-use super::output::{print, write_or_print};
+use super::number::whole;
+use super::output::{check_output, print, write_or_print};
 use super::table::Table;
 use super::{AdapterChoice, CliError, search};
 
@@ -30,7 +31,7 @@ random, spaced evenly over all floats, and at edges; above the bound the exit co
 
 Examples:
   dpsm eval --exhaustive -o errors.csv          (every function; hours)
-  dpsm eval dpsm_project --exhaustive --points 1000000
+  dpsm eval dpsm_project --exhaustive --count 1000000
   dpsm eval --list                              (functions and what they take)
   dpsm eval dpsm_project
   dpsm eval dpsm_project --input points.csv     (header p.x,p.y,p.z)
@@ -47,8 +48,8 @@ pub struct EvalArguments {
     exhaustive: bool,
     /// Inputs of each function in a search
     #[arg(long, requires = "exhaustive", default_value = "100000000",
-        value_parser = clap::value_parser!(u64).range(1..))]
-    points: u64,
+        value_parser = whole::<1, { u64::MAX }>, alias = "points")]
+    count: u64,
     /// Inputs, one record a line; the header names the arguments' components. By default the
     /// function's named hard cases
     #[arg(long)]
@@ -65,12 +66,13 @@ pub struct Record {
 }
 
 pub fn eval(adapter: AdapterChoice, arguments: &EvalArguments) -> Result<(), CliError> {
+    check_output(arguments.output.as_deref())?;
     if arguments.list {
         return print(&list()?);
     }
     if arguments.exhaustive {
         let function = arguments.function.as_deref();
-        return search::search(function, arguments.points, arguments.output.as_deref());
+        return search::search(function, arguments.count, arguments.output.as_deref());
     }
     let (signature, records) = inputs(arguments)?;
     let function = signature.name.as_str();

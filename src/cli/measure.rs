@@ -13,6 +13,7 @@ use dpsm::scalar::maps::DepthMaps;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use super::number::{whole, whole32};
 use super::output::print;
 use super::setup::{Names, SetupArguments, make_maps};
 use super::{AdapterChoice, CliError, describe};
@@ -34,17 +35,17 @@ pub struct MeasureArguments {
     #[command(flatten)]
     pub setup: SetupArguments,
     /// Surface points to judge
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    #[arg(long, default_value_t = 20_000, value_parser = whole32::<1, 10_000_000>)]
     count: u32,
     /// Scatter the points over all surfaces in place of those that the camera sees
     #[arg(long)]
     scatter: bool,
     /// Chooses the points; the same seed chooses the same ones
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<0, { u64::MAX }>, default_value_t = 1)]
     seed: u64,
     /// Pixels along the width of the picture of which every pixel is judged, its height three quarters
     /// of it; 0 for none; by default 480, or 160 where rays to a spherical light are the truth
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(0..=8192))]
+    #[arg(long, value_name = "PIXELS", value_parser = whole32::<0, 8192>)]
     picture: Option<u32>,
     /// JSON in place of a table
     #[arg(long)]

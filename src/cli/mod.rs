@@ -6,6 +6,7 @@ pub mod check;
 mod error;
 mod eval;
 mod measure;
+mod number;
 mod output;
 mod parts;
 mod plan;
@@ -20,11 +21,11 @@ mod tint;
 
 pub use error::CliError;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand, ValueEnum};
 use dpsm::gpu::{Device, GpuError};
-use glam::Vec3;
+use glam::DVec3;
 
 /// Point-light shadows from dual-paraboloid maps.
 ///
@@ -43,8 +44,8 @@ pub struct Arguments {
     #[arg(long, global = true, value_enum, default_value = "auto")]
     adapter: AdapterChoice,
     /// Folder for the report when no command is given
-    #[arg(long, default_value = report::FOLDER)]
-    folder: PathBuf,
+    #[arg(long)]
+    folder: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
@@ -86,11 +87,32 @@ enum Command {
     Report(report::ReportArguments),
 }
 
+impl Arguments {
+    /// Refuses what the command would not look at.
+    fn check(&self) -> Result<(), CliError> {
+        match (&self.command, &self.folder) {
+            (Some(_), Some(folder)) => {
+                let folder = folder.display();
+                let message = format!(
+                    "--folder {folder} is for the report that no command makes; give `dpsm report` \
+                     its own --folder behind it, and the other commands -o"
+                );
+                Err(CliError::Usage(message))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: Arguments) -> Result<(), CliError> {
     let adapter = arguments.adapter;
+    arguments.check()?;
     match arguments.command {
-        None => report::report(adapter, &report::ReportArguments::all(&arguments.folder)),
+        None => {
+            let folder = arguments.folder.as_deref().unwrap_or(Path::new(report::FOLDER));
+            report::report(adapter, &report::ReportArguments::all(folder))
+        }
         Some(Command::Render(render)) => render::render(adapter, &render),
         Some(Command::Modules) => text::modules(),
         Some(Command::Link(link)) => text::link(&link),
@@ -131,6 +153,12 @@ impl AdapterChoice {
                 device.watch(|error| fail(&error.into()));
                 Ok(Some(device))
             }
+            // who names an adapter wants no other
+            Err(error @ GpuError::NoAdapter { .. })
+                if std::env::var("WGPU_ADAPTER_NAME").is_ok_and(|name| !name.is_empty()) =>
+            {
+                Err(error.into())
+            }
             Err(
                 error @ (GpuError::NoAdapter { .. }
                 | GpuError::NoDevice { .. }
@@ -154,7 +182,7 @@ fn describe(device: Option<&Device>) -> String {
 }
 
 /// Parses `x,y,z`.
-fn parse_vector(text: &str) -> Result<Vec3, String> {
+fn parse_vector(text: &str) -> Result<DVec3, String> {
     let numbers: Vec<&str> = text.split(',').map(str::trim).collect();
     let &[x, y, z] = numbers.as_slice() else {
         return Err("expected three numbers, as in -1,2,0.5".into());
@@ -162,9 +190,9 @@ fn parse_vector(text: &str) -> Result<Vec3, String> {
     let number = |text: &str| {
         let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
         match (value as f32).is_finite() {
-            true => Ok(value as f32),
+            true => Ok(value),
             false => Err(format!("`{text}` is outside float range, 3.4e38 at the most")),
         }
     };
-    Ok(Vec3::new(number(x)?, number(y)?, number(z)?))
+    Ok(DVec3::new(number(x)?, number(y)?, number(z)?))
 }

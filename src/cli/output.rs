@@ -22,10 +22,28 @@ impl Outputs {
         Self { files: Vec::new(), option }
     }
 
+    /// Refuses a file that could not be written, before anything is made for it.
+    pub fn check(&self, path: &Path) -> Result<(), CliError> {
+        self.target(path).map(drop)
+    }
+
     /// Adds a file's bytes; nothing is written yet. A link's target is replaced, not the link; a
     /// pipe or a device is refused, as it can take no whole file.
     pub fn add(&mut self, path: &Path, bytes: Vec<u8>) -> Result<(), CliError> {
+        let target = self.target(path)?;
+        self.files.push((target, bytes));
+        Ok(())
+    }
+
+    fn target(&self, path: &Path) -> Result<PathBuf, CliError> {
         let target = path.canonicalize().unwrap_or_else(|_| path.into());
+        if let Some(folder) = folder_of(&target).filter(|folder| !folder.is_dir()) {
+            let what = match folder.exists() {
+                true => format!("`{}` is not a folder", folder.display()),
+                false => format!("there is no folder `{}`; make it", folder.display()),
+            };
+            return Err(self.unwritable(path, Error::other(what)));
+        }
         if target.exists() && !target.is_file() {
             let what = if target.is_dir() { "it is a folder" } else { "it is no regular file" };
             return Err(self.unwritable(path, Error::other(what)));
@@ -33,8 +51,7 @@ impl Outputs {
         if target.metadata().is_ok_and(|metadata| metadata.permissions().readonly()) {
             return Err(self.unwritable(path, std::io::ErrorKind::PermissionDenied.into()));
         }
-        self.files.push((target, bytes));
-        Ok(())
+        Ok(target)
     }
 
     /// Adds a picture as PNG.
@@ -73,15 +90,17 @@ impl Outputs {
     }
 }
 
+/// The folder that a file lies in; `None` where the path does not name one.
+fn folder_of(path: &Path) -> Option<&Path> {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty())
+}
+
 /// A name of its own beside a file, that vanishes unless it is moved.
 fn beside<T>(
     path: &Path,
     make: impl FnMut(&Path) -> std::io::Result<T>,
 ) -> std::io::Result<NamedTempFile<T>> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(path).unwrap_or(Path::new("."));
     // the kind alone: the message names the file that was asked for
     tempfile::Builder::new().prefix(".dpsm-").make_in(folder, make).map_err(|e| e.kind().into())
 }
@@ -126,6 +145,11 @@ pub fn print(text: &str) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses an output that could not be written, before there is one.
+pub fn check_output(path: Option<&Path>) -> Result<(), CliError> {
+    path.map_or(Ok(()), |path| Outputs::for_option("-o").check(path))
 }
 
 /// Writes text to a file, or prints it.

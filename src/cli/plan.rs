@@ -6,14 +6,15 @@ use std::str::FromStr;
 use clap::Args;
 use dpsm::plan::{Request, Target};
 use dpsm::render::Settings;
-use dpsm::scene::{Camera, Options, Scene};
-use glam::Vec3;
+use dpsm::scene::{Camera, Scene};
+use glam::{DVec3, Vec3};
 
 use super::measure::pretty;
-use super::output::{Outputs, print};
+use super::number::{ANY, whole, whole32};
+use super::output::{Outputs, check_output, print};
 use super::probe::points;
 use super::render::parse_size;
-use super::setup::open;
+use super::setup::{no_cast, open};
 use super::table::Table;
 use super::{CliError, parse_vector};
 
@@ -40,7 +41,7 @@ pub struct PlanArguments {
     scene: String,
     /// The light's position, by default the scene's own light; several for a moving one
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    light: Vec<Vec3>,
+    light: Vec<DVec3>,
     /// A CSV file of the light's positions, with the header x,y,z
     #[arg(long, value_name = "FILE", conflicts_with = "light")]
     path: Option<PathBuf>,
@@ -49,13 +50,13 @@ pub struct PlanArguments {
     hemisphere: bool,
     /// A hemispherical light's main axis; by default the light's own, or down
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    axis: Option<Vec3>,
+    axis: Option<DVec3>,
     /// The camera's position, or `scene` for the scene's own camera; by default all surfaces count
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     camera: Option<Eye>,
     /// The point that the camera looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true, requires = "camera")]
-    look_at: Option<Vec3>,
+    look_at: Option<DVec3>,
     /// Width and height of the camera's image
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "960x720")]
     image: [u32; 2],
@@ -65,11 +66,14 @@ pub struct PlanArguments {
     /// Most memory of the maps
     #[arg(long, value_name = "MiB", allow_negative_numbers = true)]
     budget: Option<f64>,
-    /// Quads along a side of a built-in room's wall; 1 gives two triangles
-    #[arg(long, default_value_t = Options::default().walls)]
-    walls: u32,
+    /// A mesh that casts no shadow, by its name: a bulb, a lamp's shade; several by one option each
+    #[arg(long, value_name = "NAME")]
+    no_cast: Vec<String>,
+    /// Quads along a side of a built-in room's wall, by default 8; 1 gives two triangles
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>)]
+    walls: Option<u32>,
     /// Chooses the receivers that are looked at
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<0, { u64::MAX }>, default_value_t = 1)]
     seed: u64,
     /// Also write the plan here, for `--plan` of render, bake, probe and measure
     #[arg(short, long)]
@@ -83,7 +87,7 @@ pub struct PlanArguments {
 #[derive(Clone, Copy, Debug)]
 enum Eye {
     Scene,
-    At(Vec3),
+    At(DVec3),
 }
 
 impl FromStr for Eye {
@@ -99,18 +103,18 @@ impl FromStr for Eye {
 
 /// The scene and what is asked of it, checked.
 pub fn request(arguments: &PlanArguments) -> Result<(Scene, Settled), CliError> {
-    let scene = open(&arguments.scene, arguments.walls)?;
     let mut settled = Settled::default();
+    let mut positions = arguments.light.clone();
     if let Some(path) = &arguments.path {
         let given = points(path, Table::read(path)?)?;
-        settled.lights = given.iter().map(|(position, _)| position.as_vec3()).collect();
-        if settled.lights.is_empty() {
+        positions = given.iter().map(|(position, _)| *position).collect();
+        if positions.is_empty() {
             let path = path.display();
             return Err(CliError::Usage(format!("{path} has no position; give a line for each")));
         }
-    } else {
-        settled.lights.clone_from(&arguments.light);
     }
+    let scene = open(&arguments.scene, arguments.walls, positions.first().copied())?;
+    settled.lights = positions.into_iter().map(|position| scene.local(position)).collect();
     settled.budget = match arguments.budget {
         Some(mib) if !(mib > 0.0 && mib.is_finite()) => {
             return Err(CliError::Usage(format!("--budget {mib} is no number of MiB above 0")));
@@ -125,15 +129,20 @@ pub fn request(arguments: &PlanArguments) -> Result<(Scene, Settled), CliError> 
     // as the other commands: a light that is moved is omnidirectional unless it is said not to be
     let own_axis = light.axis.filter(|_| own);
     if arguments.hemisphere || own_axis.is_some() {
-        settled.axis = arguments.axis.or(light.axis).or(Some(Vec3::NEG_Y));
+        let axis = arguments.axis.map(|axis| axis.as_vec3());
+        settled.axis = axis.or(light.axis).or(Some(Vec3::NEG_Y));
     }
     settled.camera = arguments.camera.map(|eye| {
         let camera = scene.camera.unwrap_or_else(|| scene.default_camera(settled.lights[0]));
         let eye = match eye {
             Eye::Scene => camera.eye,
-            Eye::At(eye) => eye,
+            Eye::At(eye) => scene.local(eye),
         };
-        Camera { eye, target: arguments.look_at.unwrap_or(camera.target), ..camera }
+        Camera {
+            eye,
+            target: arguments.look_at.map_or(camera.target, |target| scene.local(target)),
+            ..camera
+        }
     });
     Ok((scene, settled))
 }
@@ -149,8 +158,10 @@ pub struct Settled {
 
 /// `dpsm plan`.
 pub fn plan(arguments: &PlanArguments) -> Result<(), CliError> {
+    check_output(arguments.output.as_deref())?;
     let (scene, Settled { lights, axis, camera, budget }) = request(arguments)?;
     let request = Request {
+        no_cast: no_cast(&scene, &arguments.no_cast)?,
         lights,
         axis,
         camera,

@@ -10,7 +10,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::measure::{bar, prepare, pretty};
-use super::output::write_or_print;
+use super::output::{check_output, write_or_print};
 use super::setup::SetupArguments;
 use super::table::Table;
 use super::{AdapterChoice, CliError, describe};
@@ -46,6 +46,7 @@ pub type Point = (DVec3, Option<DVec3>);
 
 /// `dpsm probe`.
 pub fn probe(adapter: AdapterChoice, arguments: &ProbeArguments) -> Result<(), CliError> {
+    check_output(arguments.output.as_deref())?;
     let given = points(&arguments.points, Table::read(&arguments.points)?)?;
     let (_, frame, maps, device) = prepare(adapter, &arguments.setup)?;
     eprintln!("dpsm: {}", describe(device.as_ref()));
@@ -54,7 +55,7 @@ pub fn probe(adapter: AdapterChoice, arguments: &ProbeArguments) -> Result<(), C
     let progress = bar("points", given.len());
     let judge = |&(position, normal): &Point| {
         progress.inc(1);
-        measure::judge(&bench, &bench.point_at(position, normal))
+        measure::judge(&bench, &bench.point_at(position - frame.origin, normal))
     };
     let judged: Vec<Judgement> = given.iter().map(judge).collect();
     progress.finish_and_clear();

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dpsm::gpu::Device;
-use dpsm::render::{Frame, Lookup, Rendering, Settings};
+use dpsm::render::{Frame, Lookup, Rendering, Settings, float};
 use dpsm::{measure, scene};
+use glam::DVec3;
 
+use super::number::{ANY, whole32};
 use super::output::{Outputs, print};
 use super::setup::{self, SetupArguments};
 use super::{AdapterChoice, CliError, describe};
@@ -28,7 +30,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "960x720")]
     image: [u32; 2],
     /// N x N samples a pixel, each with a shadow test of its own: 1 to 8
-    #[arg(long, value_name = "N", default_value_t = Settings::default().samples)]
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>, default_value_t = Settings::default().samples)]
     samples: u32,
     /// The factor on linear light; by default such that at most 0.5% of the pixels are too bright to
     /// show, and 2 at most
@@ -74,7 +76,7 @@ enum LookupName {
 
 /// Parses `960x720`.
 pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let number = |text: &str| text.parse().map_err(|_| format!("`{text}` is not a whole number"));
+    let number = whole32::<0, ANY>;
     let (width, height) = text.split_once('x').ok_or("expected WIDTHxHEIGHT, as in 960x720")?;
     Ok([number(width)?, number(height)?])
 }
@@ -103,8 +105,9 @@ pub fn framed(arguments: &RenderArguments) -> Result<(String, Frame), CliError> 
 /// `dpsm render`.
 pub fn render(adapter: AdapterChoice, arguments: &RenderArguments) -> Result<(), CliError> {
     let (scene, frame) = framed(arguments)?;
-    let device = adapter.open()?;
     let mut outputs = Outputs::for_option("-o");
+    outputs.check(&arguments.output)?;
+    let device = adapter.open()?;
     let picture = picture(device.as_ref(), &scene, &frame, arguments, &mut outputs)?;
     finish(format!("{}\n{picture}", describe(device.as_ref())), outputs)
 }
@@ -126,10 +129,9 @@ fn picture(
     }
     companions(frame, &rendering, output, outputs)?;
     let mut report = format!("{scene}: {} triangles\n", frame.triangles.len());
-    let light = frame.light.position;
-    let light = option("light", [light.x, light.y, light.z]);
+    let light = option("light", frame.in_file(frame.light.position));
     let [camera, target] = [("camera", frame.view.eye), ("look-at", frame.view.target())]
-        .map(|(name, point)| option(name, point.to_array()));
+        .map(|(name, point)| option(name, frame.in_file(float(point))));
     let _ = writeln!(report, "  {light} {camera} {target} --exposure {}", rendering.exposure);
     for (pass, time) in &rendering.timings {
         let _ = writeln!(report, "  {pass:<12}{:9.3} ms", time.as_secs_f64() * 1e3);
@@ -138,8 +140,8 @@ fn picture(
 }
 
 /// An option of a point, ready to be pasted: up to six decimals, as f32 has no more to give.
-fn option(name: &str, point: [f32; 3]) -> String {
-    let [x, y, z] = point.map(|c| (f64::from(c) * 1e6).round() / 1e6);
+fn option(name: &str, point: DVec3) -> String {
+    let [x, y, z] = point.to_array().map(|c| (c * 1e6).round() / 1e6);
     format!("--{name}={x},{y},{z}")
 }
 

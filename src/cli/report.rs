@@ -8,19 +8,21 @@ use clap::Args;
 use dpsm::gpu::Device;
 use dpsm::report::data::Report;
 use dpsm::report::{self, Effort, Job, Part, Subject, compare};
-use dpsm::scene::{self, BUILT_IN, Options};
-use glam::Vec3;
+use dpsm::scene::BUILT_IN;
+use glam::DVec3;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::number::{ANY, whole, whole32};
 use super::output::{print, read_text};
 use super::parts::{COSTS, Parts};
 use super::render::parse_size;
+use super::setup::{has_walls, no_cast, open};
 use super::{AdapterChoice, CliError, describe, parse_vector};
 
 /// Where a report goes unless another folder is named.
 pub const FOLDER: &str = "dpsm-report";
 
-const SMALLEST: i64 = Effort::SMALLEST as i64;
+const SMALLEST: u64 = Effort::SMALLEST as u64;
 
 /// Report on scenes: speed and error of every method, size and filter, with pictures
 #[derive(Debug, Args)]
@@ -49,25 +51,28 @@ pub struct ReportArguments {
     fresh: bool,
     /// The light's position in every scene; by default each scene's own light
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    light: Option<Vec3>,
-    /// Quads along a side of a built-in room's wall; 1 gives two triangles
-    #[arg(long, default_value_t = Options::default().walls)]
-    walls: u32,
+    light: Option<DVec3>,
+    /// A mesh that casts no shadow, by its name, in each scene that has it; several by one option each
+    #[arg(long, value_name = "NAME")]
+    no_cast: Vec<String>,
+    /// Quads along a side of a built-in room's wall, by default 8; 1 gives two triangles
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>)]
+    walls: Option<u32>,
     /// Texels along a side of the largest maps, the others having half and a quarter; by default
     /// 1024, or 256 by the ports
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(SMALLEST..))]
+    #[arg(long, value_name = "N", value_parser = whole32::<SMALLEST, ANY>)]
     size: Option<u32>,
     /// Width and height of the pictures
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     image: Option<[u32; 2]>,
     /// Points that are judged in each scene; by default 2000, or 1000 by the ports
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    points: Option<u32>,
+    #[arg(long, value_name = "N", value_parser = whole32::<1, 1_000_000>, alias = "points")]
+    count: Option<u32>,
     /// Chooses the points; the same seed chooses the same ones
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, value_parser = whole::<0, { u64::MAX }>, default_value_t = 1)]
     seed: u64,
     /// Timed runs of each variant; by default 5, or 2 by the ports
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = whole32::<1, 1000>)]
     runs: Option<u32>,
     /// Say what changed from one report.json to another, and write nothing
     #[arg(long, num_args = 2, value_names = ["A.json", "B.json"], exclusive = true)]
@@ -77,16 +82,16 @@ pub struct ReportArguments {
 impl ReportArguments {
     /// All built-in scenes.
     pub fn all(folder: &Path) -> Self {
-        let Options { walls, .. } = Options::default();
         Self {
             scenes: Vec::new(),
             folder: folder.into(),
             fresh: false,
             light: None,
-            walls,
+            no_cast: Vec::new(),
+            walls: None,
             size: None,
             image: None,
-            points: None,
+            count: None,
             seed: 1,
             runs: None,
             compare: None,
@@ -98,7 +103,7 @@ impl ReportArguments {
         Effort {
             size: self.size.unwrap_or(usual.size),
             image: self.image.unwrap_or(usual.image),
-            points: self.points.map_or(usual.points, |points| points as usize),
+            points: self.count.map_or(usual.points, |count| count as usize),
             seed: self.seed,
             runs: self.runs.unwrap_or(usual.runs),
         }
@@ -111,15 +116,20 @@ pub fn subjects(arguments: &ReportArguments) -> Result<Vec<Subject>, CliError> {
     let all = || BUILT_IN.iter().map(|(name, _)| name.to_string()).collect();
     let asked = if arguments.scenes.is_empty() { all() } else { arguments.scenes.clone() };
     let mut subjects: Vec<Subject> = Vec::new();
+    let mut unknown = arguments.no_cast.clone();
     for (place, wanted) in asked.iter().enumerate() {
         if asked[..place].contains(wanted) {
             return Err(CliError::Usage(format!("{wanted} is named twice; name each scene once")));
         }
-        let scene = scene::open(wanted, &Options { walls: arguments.walls, ..Options::default() })?;
-        for warning in &scene.warnings {
-            eprintln!("dpsm: {warning}");
-        }
-        let mut subject = Subject::new(scene, arguments.light);
+        // of all scenes, those that have walls
+        let named = !arguments.scenes.is_empty();
+        let walls = arguments.walls.filter(|_| named || has_walls(wanted));
+        let scene = open(wanted, walls, arguments.light)?;
+        let here = |name: &&String| scene.meshes.iter().any(|mesh| mesh.name == **name);
+        let named: Vec<String> = arguments.no_cast.iter().filter(here).cloned().collect();
+        unknown.retain(|name| !named.contains(name));
+        let no_cast = no_cast(&scene, &named)?;
+        let mut subject = Subject { no_cast, ..Subject::new(scene, arguments.light) };
         let stem = subject.name.clone();
         let taken = |name: &String| name == COSTS || subjects.iter().any(|s| s.name == *name);
         let names = std::iter::once(stem.clone()).chain((2..).map(|n| format!("{stem}-{n}")));
@@ -128,6 +138,10 @@ pub fn subjects(arguments: &ReportArguments) -> Result<Vec<Subject>, CliError> {
         }
         subject.check(&arguments.effort(false))?;
         subjects.push(subject);
+    }
+    if let Some(name) = unknown.first() {
+        let message = format!("--no-cast {name}: none of the scenes has a mesh of that name");
+        return Err(CliError::Usage(message));
     }
     Ok(subjects)
 }

@@ -6,13 +6,16 @@ use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
 use dpsm::plan::Plan;
-use dpsm::render::{Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Taps};
+use dpsm::render::{
+    Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Shine, Taps,
+};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
-use dpsm::scene::{self, Light, Options, Scene};
+use dpsm::scene::{self, Options, Scene};
 use dpsm::{cpu, render};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
+use super::number::{ANY, whole32};
 use super::output::read_text;
 use super::{CliError, parse_vector};
 
@@ -23,17 +26,17 @@ pub struct SetupArguments {
     scene: String,
     /// The light's position; by default the scene's own light
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    light: Option<Vec3>,
+    light: Option<DVec3>,
     /// More lights of the same kind, one option each: the picture is the mean over all; maps and
     /// measures are of the first
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    more_light: Vec<Vec3>,
+    more_light: Vec<DVec3>,
     /// A hemispherical light: one map, the other half always in shadow; a cube has all six faces
     #[arg(long)]
     hemisphere: bool,
     /// The light's main axis; by default the light's own, or down
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    axis: Option<Vec3>,
+    axis: Option<DVec3>,
     /// A plan that `dpsm plan -o` wrote: it says all that is said below but the camera, and the light
     /// where --light does not
     #[arg(
@@ -47,7 +50,7 @@ pub struct SetupArguments {
     )]
     pub plan: Option<PathBuf>,
     /// Texels along a side of a map; a cube's faces have half as many, for texels as fine
-    #[arg(long, default_value_t = Settings::default().size)]
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>, default_value_t = Settings::default().size)]
     size: u32,
     /// Storage of the maps
     #[arg(long, value_enum, default_value = "d32")]
@@ -55,12 +58,12 @@ pub struct SetupArguments {
     /// How the maps are made
     #[arg(long, value_enum, default_value = "hybrid")]
     method: MethodName,
-    /// How far off an edge may be drawn, in texels, 0 to 4: for hybrid, whose maps `measure` judges
-    /// by it too, and for tessellated without --level
-    #[arg(long, value_name = "TEXELS", default_value_t = Settings::default().tau, value_parser = parse_tau, allow_negative_numbers = true)]
-    tau: f32,
+    /// For hybrid: how far off an edge may be drawn, in texels, 0 to 4, by default 1/32; `measure` judges
+    /// the maps by it too
+    #[arg(long, value_name = "TEXELS", value_parser = parse_tau, allow_negative_numbers = true)]
+    tau: Option<f32>,
     /// For tessellated: each triangle into N x N; by default each mesh as tau asks
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, value_name = "N", value_parser = whole32::<1, 64>)]
     level: Option<u32>,
     /// For cube: draw all triangles to each face, also those that it cannot see
     #[arg(long)]
@@ -73,7 +76,7 @@ pub struct SetupArguments {
     #[arg(long, value_enum)]
     filter: Option<FilterName>,
     /// For disk, mirror, reproject and pcss: taps of a kernel; for pcf: texels along its side
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>)]
     taps: Option<u32>,
     /// For disk, mirror and reproject: the kernel's half-angle in degrees, below 90; by default 1
     #[arg(
@@ -109,15 +112,18 @@ pub struct SetupArguments {
     /// Far sphere's radius in world units
     #[arg(long, allow_negative_numbers = true)]
     far: Option<f32>,
-    /// Quads along a side of a built-in room's wall; 1 gives two triangles
-    #[arg(long, default_value_t = Options::default().walls)]
-    walls: u32,
+    /// A mesh that casts no shadow, by its name: a bulb, a lamp's shade; several by one option each
+    #[arg(long, value_name = "NAME")]
+    no_cast: Vec<String>,
+    /// Quads along a side of a built-in room's wall, by default 8; 1 gives two triangles
+    #[arg(long, value_name = "N", value_parser = whole32::<0, ANY>)]
+    walls: Option<u32>,
     /// The camera's position
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    camera: Option<Vec3>,
+    camera: Option<DVec3>,
     /// The point that the camera looks at
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    look_at: Option<Vec3>,
+    look_at: Option<DVec3>,
 }
 
 /// Formats by their option names.
@@ -129,7 +135,7 @@ enum FormatName {
 }
 
 /// Methods by their option names.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 enum MethodName {
     /// Straight edges, all interpolated (Brabec 2002)
     Vertex,
@@ -185,6 +191,9 @@ enum FilterName {
     /// Soft shadows of a spherical light that harden towards contact
     Pcss,
 }
+
+/// How many meshes an error lists.
+const NAMED: usize = 20;
 
 /// Taps of a kernel, where none are given; and texels along a naive kernel's side.
 const TAPS: u32 = 16;
@@ -366,16 +375,22 @@ impl SetupArguments {
             _ => Name::Plane,
         };
         let asked = self.bias.unwrap_or(usual);
+        let given = self.bias.is_some() || self.constant_bias.is_some();
         let fits = match self.filter_name() {
             FilterName::Single => matches!(asked, Name::Plane | Name::Normal),
-            FilterName::Hard | FilterName::Hardware => !matches!(asked, Name::Plane | Name::Normal),
-            _ => true,
+            FilterName::Hard | FilterName::Hardware | FilterName::Pcf => {
+                !matches!(asked, Name::Plane | Name::Normal)
+            }
+            _ => !given,
         };
         if !fits {
             let (bias, filter) = (name(asked), name(self.filter_name()));
             let remedy = match self.filter_name() {
                 FilterName::Single => "plane or normal; --filter hard and hardware take the others",
-                _ => "another; plane and normal are for --filter single",
+                FilterName::Hard | FilterName::Hardware | FilterName::Pcf => {
+                    "another; plane and normal are for --filter single"
+                }
+                _ => "none: its taps compare the receiver's plane",
             };
             let message = format!("--bias {bias} is not for --filter {filter}: give {remedy}");
             return Err(CliError::Usage(message));
@@ -394,9 +409,29 @@ impl SetupArguments {
         })
     }
 
+    /// Refuses options of other methods.
+    fn check_method(&self) -> Result<(), CliError> {
+        use MethodName as Name;
+        let others = [
+            ("--tau", self.tau.is_some(), Name::Hybrid),
+            ("--level", self.level.is_some(), Name::Tessellated),
+            ("--no-cull-faces", self.no_cull_faces, Name::Cube),
+        ];
+        let ignored = |(_, given, method): &&(&str, bool, Name)| *given && *method != self.method;
+        match others.iter().find(ignored) {
+            Some((option, _, method)) => {
+                let (method, asked) = (name(*method), name(self.method));
+                let message = format!("{option} is for --method {method}, not {asked}");
+                Err(CliError::Usage(message))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Opens the scene and makes the frame; warnings go to stderr. The picture's settings, lookup
     /// and views are those of `base`.
     pub fn frame(&self, base: Settings) -> Result<(String, Frame), CliError> {
+        self.check_method()?;
         let settings = Settings {
             size: self.size,
             format: match self.format {
@@ -412,7 +447,7 @@ impl SetupArguments {
                 MethodName::Hybrid => Method::Hybrid,
                 MethodName::Cube => Method::Cube,
             },
-            tau: self.tau,
+            tau: self.tau.unwrap_or(Settings::default().tau),
             level: self.level.map_or(Settings::default().level, Level::Constant),
             cull_faces: !self.no_cull_faces,
             passes: match self.passes {
@@ -431,16 +466,22 @@ impl SetupArguments {
             bias: self.bias()?,
             ..base
         };
-        let scene = open(&self.scene, self.walls)?;
-        let plan = self.plan.as_deref().map(|path| planned(path, &scene)).transpose()?;
-        let settings = match &plan {
+        let plan = self.plan.as_deref().map(planned).transpose()?;
+        let of_plan = plan.as_ref().and_then(|plan| plan.lights.first().copied());
+        let position = self.light.or(of_plan.map(DVec3::from_array));
+        let scene = open(&self.scene, self.walls, position)?;
+        if let Some(plan) = &plan {
+            plan.check(&scene)?;
+        }
+        let no_cast = no_cast(&scene, &self.no_cast)?;
+        let mut settings = match &plan {
             Some(plan) => plan.settings(&settings)?,
             None => settings,
         };
+        settings.leave_out(&no_cast);
         let mut light = scene.default_light();
-        let light_of_plan = plan.as_ref().and_then(|plan| plan.lights.first());
-        match self.light.or(light_of_plan.map(|light| Vec3::from_array(*light))) {
-            Some(position) => light = Light { position, axis: None, cone: None, ..light },
+        match position {
+            Some(position) => light = light.moved(scene.local(position)),
             None if scene.lights.len() > 1 => {
                 eprintln!("dpsm: the scene has {} lights; using the first", scene.lights.len());
             }
@@ -449,40 +490,70 @@ impl SetupArguments {
         let (axis, hemispherical) = match &plan {
             Some(plan) => (Vec3::from_array(plan.axis), plan.is_hemispherical()),
             None => (
-                self.axis.or(light.axis).unwrap_or(Vec3::NEG_Y),
+                self.axis.map(|axis| axis.as_vec3()).or(light.axis).unwrap_or(Vec3::NEG_Y),
                 self.hemisphere || light.axis.is_some(),
             ),
         };
         let mut camera = scene.camera.unwrap_or_else(|| scene.default_camera(light.position));
-        camera.eye = self.camera.unwrap_or(camera.eye);
-        camera.target = self.look_at.unwrap_or(camera.target);
+        camera.eye = self.camera.map_or(camera.eye, |eye| scene.local(eye));
+        camera.target = self.look_at.map_or(camera.target, |target| scene.local(target));
         let frame_at =
             |position| Frame::new(&scene, position, axis, hemispherical, &camera, settings.clone());
-        let more: Vec<_> = self.more_light.iter().map(|&position| frame_at(position)).collect();
-        let more: Result<Vec<Frame>, _> = more.into_iter().collect();
+        let more = self.more_light.iter().map(|&position| frame_at(scene.local(position)));
+        let more: Result<Vec<Frame>, _> = more.collect();
         let frame = frame_at(light.position)?;
+        for warning in frame.warnings() {
+            eprintln!("dpsm: {warning}");
+        }
         let frame = frame.with_lights(more?.into_iter().map(|frame| frame.light))?;
-        Ok((scene.name, Frame { color: light.color, ..frame }))
+        Ok((scene.name, Frame { color: light.color, shine: Shine::of(&light), ..frame }))
     }
 }
 
-/// Opens a scene; its warnings go to stderr.
-pub fn open(name: &str, walls: u32) -> Result<Scene, CliError> {
-    let scene = scene::open(name, &Options { walls, ..Options::default() })?;
+/// True of the built-in scenes that are made of walls.
+pub fn has_walls(name: &str) -> bool {
+    name != "hills" && scene::BUILT_IN.iter().any(|(built_in, _)| *built_in == name)
+}
+
+/// Opens a scene, most exact around a point of the file's coordinates; its warnings go to stderr.
+pub fn open(name: &str, walls: Option<u32>, around: Option<DVec3>) -> Result<Scene, CliError> {
+    if walls.is_some() && !has_walls(name) {
+        let message = format!("--walls is for built-in rooms, and `{name}` is none; leave it out");
+        return Err(CliError::Usage(message));
+    }
+    let options = Options { around, ..Options::default() };
+    let scene = scene::open(name, &Options { walls: walls.unwrap_or(options.walls), ..options })?;
     for warning in &scene.warnings {
         eprintln!("dpsm: {warning}");
     }
     Ok(scene)
 }
 
-/// Reads a plan, which must be this scene's.
-fn planned(path: &Path, scene: &Scene) -> Result<Plan, CliError> {
-    let plan: Plan = serde_json::from_str(&read_text(path)?).map_err(|error| {
+/// Of each of a scene's meshes, whether it is one of those that are named; all of one name are.
+pub fn no_cast(scene: &Scene, names: &[String]) -> Result<Vec<bool>, CliError> {
+    let is = |name: &str| scene.meshes.iter().any(|mesh| mesh.name == name);
+    if let Some(unknown) = names.iter().find(|name| !is(name)) {
+        let mut known: Vec<&str> = scene.meshes.iter().map(|mesh| mesh.name.as_str()).collect();
+        known.sort_by_key(|name| strsim::damerau_levenshtein(name, unknown));
+        known.dedup();
+        let more = known.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        known.truncate(NAMED);
+        let message = format!(
+            "--no-cast {unknown}: the scene has no mesh of that name; it has {}{more}",
+            known.join(", ")
+        );
+        return Err(CliError::Usage(message));
+    }
+    Ok(scene.meshes.iter().map(|mesh| names.contains(&mesh.name)).collect())
+}
+
+/// Reads a plan.
+fn planned(path: &Path) -> Result<Plan, CliError> {
+    serde_json::from_str(&read_text(path)?).map_err(|error| {
         let path = path.display();
         CliError::Usage(format!("{path} is no plan: {error}; make one with `dpsm plan -o {path}`"))
-    })?;
-    plan.check(scene)?;
-    Ok(plan)
+    })
 }
 
 fn name(value: impl ValueEnum) -> String {
