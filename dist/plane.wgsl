@@ -18,11 +18,11 @@ fn dpsm_depth_stored(depth: f32, reversed: u32) -> f32 {
     return select(depth, 1.0 - depth, reversed == 1u);
 }
 
-/// dpsm_depth_stored of four depths.
+/// dpsm_depth_stored of four depths that are not below 0, for loops: no choice.
 ///
-/// Domain and bound: as for dpsm_depth_stored.
+/// Domain: depths in [0, 1], reversed 0 or 1. Bound: as for dpsm_depth_stored.
 fn dpsm_depth_stored_four(depths: vec4<f32>, reversed: u32) -> vec4<f32> {
-    return select(depths, 1.0 - depths, vec4<bool>(reversed == 1u));
+    return abs(vec4<f32>(f32(reversed)) - depths);
 }
 
 /// The depth of a receiver, clamped to [0, 1]: one nearer than near compares as lit, and beyond

@@ -1471,7 +1471,7 @@ MUTATIONS = [
      "reversed", "reversed_maps_are_1_less_the_others"),
     ("src/gpu/passes.rs", "true => wgpu::CompareFunction::Greater", "true => wgpu::CompareFunction::Less",
      "reversed", "adapters_draw_and_read_reversed_maps_as_the_ports_do"),
-    ("plane.rs", "dpsm_depth_stored_four(stored, light.reversed)", "stored",
+    ("depth.rs", "T::lit(reversed.into())", "T::lit(0.0)",
      "reversed", "every_lookup_lights_the_same_points_by_reversed_maps"),
     # spots
     ("shade.rs", "(inner - outer).max(T::lit(0.001))", "(inner - outer)",

@@ -17,9 +17,10 @@ pub fn dpsm_depth_stored<T: Float>(depth: T, reversed: u32) -> T {
     select(depth, T::lit(1.0) - depth, reversed == 1)
 }
 
-/// dpsm_depth_stored of four depths.
+/// dpsm_depth_stored of four depths that are not below 0, for loops: no choice.
 pub fn dpsm_depth_stored_four<T: Float>(depths: Vec4<T>, reversed: u32) -> Vec4<T> {
-    select(depths, Vec4::splat(T::lit(1.0)) - depths, reversed == 1)
+    let one = T::lit(reversed.into());
+    Vec4::from_array(depths.to_array().map(|depth| (one - depth).abs()))
 }
 
 /// True where a radial distance lies between the clipping spheres, both included.
