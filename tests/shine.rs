@@ -21,7 +21,7 @@ fn spot(settings: Settings) -> Frame {
         cone: Some(Cone { inner: 30_f32.to_radians(), outer: 45_f32.to_radians() }),
         range: Some(5.0),
     };
-    Frame { shine: Shine::of(&light), ..frame }
+    frame.shining(&light)
 }
 
 fn settings() -> Settings {
@@ -83,4 +83,15 @@ fn pictures_are_dark_outside_a_spots_cone_and_beyond_the_range() {
         }
     }
     assert!(counts.iter().all(|count| *count > 20), "{counts:?}");
+}
+
+#[test]
+fn far_is_no_farther_than_the_range_and_cuts_off_what_is_dark_without_a_word() {
+    let frame = spot(settings());
+    assert_eq!(frame.light.far, 5.0);
+    assert_eq!(frame.warnings(), [""; 0]);
+    // a far that is asked for stays
+    assert_eq!(spot(Settings { far: Some(20.0), ..settings() }).light.far, 20.0);
+    let shorter = spot(Settings { far: Some(3.0), ..settings() });
+    assert_eq!((shorter.light.far, shorter.warnings().len()), (3.0, 1));
 }

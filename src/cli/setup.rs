@@ -6,9 +6,7 @@ use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
 use dpsm::measure::MAX_TAU;
 use dpsm::plan::Plan;
-use dpsm::render::{
-    Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Shine, Taps,
-};
+use dpsm::render::{Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Taps};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Options, Scene};
 use dpsm::{cpu, render};
@@ -501,12 +499,11 @@ impl SetupArguments {
             |position| Frame::new(&scene, position, axis, hemispherical, &camera, settings.clone());
         let more = self.more_light.iter().map(|&position| frame_at(scene.local(position)));
         let more: Result<Vec<Frame>, _> = more.collect();
-        let frame = frame_at(light.position)?;
+        let frame = frame_at(light.position)?.shining(&light);
         for warning in frame.warnings() {
             eprintln!("dpsm: {warning}");
         }
-        let frame = frame.with_lights(more?.into_iter().map(|frame| frame.light))?;
-        Ok((scene.name, Frame { color: light.color, shine: Shine::of(&light), ..frame }))
+        Ok((scene.name, frame.with_lights(more?.into_iter().map(|frame| frame.light))?))
     }
 }
 

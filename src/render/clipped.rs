@@ -24,14 +24,20 @@ impl Frame {
     pub fn warnings(&self) -> Vec<String> {
         let reaches = self.reaches();
         let [near, far] = self.radii();
+        // what lies beyond the range needs no shadow
+        let range = f64::from(self.shine.range);
         let step = self.step();
         let texels = f64::from(self.light.size) / (2.0 * (1.0 + f64::from(self.light.guard)));
         let wide = step * texels;
         let at = |mesh: &str, distance: f64| format!("`{mesh}` at {distance:.3e}");
         let nearer =
             named(reaches.iter().filter(|r| r.nearest < near).map(|r| at(r.mesh, r.nearest)));
-        let farther =
-            named(reaches.iter().filter(|r| r.farthest > far).map(|r| at(r.mesh, r.farthest)));
+        let farther = named(
+            reaches
+                .iter()
+                .filter(|r| r.farthest > far && far < range)
+                .map(|r| at(r.mesh, r.farthest)),
+        );
         let coarse =
             named(reaches.iter().filter(|r| r.nearest < wide).map(|r| at(r.mesh, r.nearest)));
         let none = "what is cut off casts no shadow";

@@ -4,6 +4,8 @@ use crate::scalar::float::{Float, Vec3};
 use crate::scalar::shade::{dpsm_range, dpsm_spot};
 use crate::scene::Light;
 
+use super::Frame;
+
 /// What a light reaches: all, or a spot's cone around its main axis, and no farther than a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shine {
@@ -32,5 +34,18 @@ impl Shine {
         let [inner, outer] = self.cone;
         let cosine = p.z / Float::max(distance, f32::MIN_POSITIVE);
         dpsm_spot(cosine, inner, outer) * dpsm_range(distance, self.range)
+    }
+}
+
+impl Frame {
+    /// The frame with a light's colour, cone and range. Beyond a range all is dark, so far comes as near
+    /// unless the settings say where it is.
+    pub fn shining(mut self, light: &Light) -> Self {
+        self.color = light.color;
+        self.shine = Shine::of(light);
+        if self.settings.far.is_none() && self.shine.range > self.light.near {
+            self.light.far = self.light.far.min(self.shine.range);
+        }
+        self
     }
 }

@@ -13,7 +13,7 @@ use super::{pareto, pictures};
 use crate::gpu::{Device, GpuError};
 use crate::measure::{self, Bench, Point, SeenError, ShadowError};
 use crate::plan::PlanError;
-use crate::render::{Frame, FrameError, Method, Settings, Shine};
+use crate::render::{Frame, FrameError, Method, Settings};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{BUILT_IN, Camera, Light, Scene, SceneError};
 
@@ -82,12 +82,12 @@ impl Subject {
         settings: &Settings,
         around: Option<(Vec3, bool)>,
     ) -> Result<Frame, FrameError> {
-        let Light { position, axis, color, .. } = self.light;
+        let Light { position, axis, .. } = self.light;
         let (axis, one) = around.unwrap_or((axis.unwrap_or(Vec3::NEG_Y), axis.is_some()));
         let mut settings = settings.clone();
         settings.leave_out(&self.no_cast);
         let frame = Frame::new(&self.scene, position, axis, one, &self.camera, settings)?;
-        Ok(Frame { color, shine: Shine::of(&self.light), ..frame })
+        Ok(frame.shining(&self.light))
     }
 
     /// Refuses what no frame can be made of.
