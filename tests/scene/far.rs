@@ -127,6 +127,10 @@ fn point_that_is_asked_for_decides_and_not_the_files_light() {
         assert_eq!(around(Some(odd)).origin, DVec3::ZERO);
     }
     assert_eq!(around(None).origin, DVec3::ZERO);
+    // what is no point leaves the decision to the light
+    let path = file("around_far.glb", moved([6_378_137.0, 0.0, 0.0]).glb());
+    let options = Options { around: Some(DVec3::NAN), ..Options::default() };
+    assert_ne!(open(path.to_str().unwrap(), &options).unwrap().origin, DVec3::ZERO);
 }
 
 #[test]

@@ -197,8 +197,12 @@ fn skinned_meshes_are_posed_by_their_joints_and_not_placed_by_their_node() {
 #[test]
 fn inverse_bind_matrices_come_before_the_joints() {
     let matrices = [DVec3::ZERO, dvec3(-3.0, 0.0, 0.0)].map(DMat4::from_translation);
-    let scene = skinned(1.0, Some(matrices)).model.read("bind.glb");
-    assert_eq!(lit(&scene, [MIDDLE, RIGHT, LEFT]), [true, false, true]);
+    let Skinned { mut model, joints, .. } = skinned(1.0, Some(matrices));
+    assert_eq!(lit(&model.read("bind.glb"), [MIDDLE, RIGHT, LEFT]), [true, false, true]);
+    model.json["nodes"][joints[1]]["scale"] = json!([2, 1, 2]);
+    let scene = model.read("scaled_bind.glb");
+    let xs = scene.meshes[1].positions.iter().map(|position| position.x);
+    assert_eq!((xs.clone().reduce(f32::min), xs.reduce(f32::max)), (Some(-2.0), Some(2.0)));
 }
 
 #[test]
@@ -233,7 +237,11 @@ fn weights_of_any_sum_type_and_number_of_sets_are_scaled_to_one() {
     attributes["WEIGHTS_0"] = json!(halves);
     attributes["JOINTS_1"] = json!(second);
     attributes["WEIGHTS_1"] = json!(shorts);
-    assert_eq!(lit(&model.read("two_sets.glb"), points), [true, false, true]);
+    let scene = model.read("two_sets.glb");
+    assert_eq!(lit(&scene, points), [true, false, true]);
+    let xs = scene.meshes[1].positions.iter().map(|position| position.x);
+    let (low, high) = (xs.clone().reduce(f32::min).unwrap(), xs.reduce(f32::max).unwrap());
+    assert!((low - 2.0).abs() < 1e-5 && (high - 4.0).abs() < 1e-5, "{low} {high}");
 
     // without any weight the first joint holds the vertex
     let Skinned { mut model, .. } = skinned(0.0, None);

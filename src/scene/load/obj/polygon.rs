@@ -41,7 +41,8 @@ pub(super) fn triangulate(polygon: &[DVec3]) -> (Vec<[usize; 3]>, bool) {
 }
 
 /// The triangles of a Delaunay triangulation with the polygon's edges in it that lie inside; `None`
-/// for a polygon that crosses or touches itself.
+/// for a polygon that crosses or touches itself. Its corners turn left, as the projection along
+/// their own normal leaves them: inside is to the left of every edge.
 fn delaunay(polygon: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
     let corners = polygon.len();
     let points = polygon.iter().map(|&[x, y]| Point2::new(x, y)).collect();
@@ -49,14 +50,12 @@ fn delaunay(polygon: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
     let mut conflicts = 0;
     let whole = Delaunay::<Point2<f64>>::try_bulk_load_cdt(points, edges, |_| conflicts += 1);
     let whole = whole.ok().filter(|whole| whole.num_vertices() == corners && conflicts == 0)?;
-    let turns_left = doubled_area(polygon) > 0.0;
-    // inside are the polygon's side of each edge, and what is beside that without an edge between
+    // inside is what lies beside an edge, and what lies beside that without an edge between
     let mut inside = vec![false; whole.num_all_faces()];
     let mut stack = Vec::new();
     for i in 0..corners {
         let [from, to] = [i, (i + 1) % corners].map(FixedVertexHandle::from_index);
-        let edge = whole.get_edge_from_neighbors(from, to)?;
-        stack.push(if turns_left { edge.fix() } else { edge.rev().fix() });
+        stack.push(whole.get_edge_from_neighbors(from, to)?.fix());
     }
     while let Some(edge) = stack.pop() {
         let edge = whole.directed_edge(edge);
@@ -71,14 +70,7 @@ fn delaunay(polygon: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
         }
     }
     let faces = whole.inner_faces().filter(|face| inside[face.fix().index()]);
-    let triangle = |[a, b, c]: [usize; 3]| if turns_left { [a, b, c] } else { [a, c, b] };
-    let cut = faces.map(|face| triangle(face.vertices().map(|vertex| vertex.index())));
+    let cut = faces.map(|face| face.vertices().map(|vertex| vertex.index()));
     let cut: Vec<_> = cut.collect();
     (cut.len() == corners - 2).then_some(cut)
-}
-
-/// Positive for a polygon that turns left.
-fn doubled_area(polygon: &[[f64; 2]]) -> f64 {
-    let next = polygon.iter().cycle().skip(1);
-    polygon.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
