@@ -212,6 +212,9 @@ fn spots_fade_between_their_angles() {
     assert_eq!([dpsm_spot(0.9, 0.8, 0.5), dpsm_spot(0.4, 0.8, 0.5)], [1.0, 0.0]);
     // angles that are one
     assert_eq!([dpsm_spot(0.6, 0.5, 0.5), dpsm_spot(0.5, 0.5, 0.5)], [1.0, 0.0]);
+    // and angles that hardly differ: the fade is a thousandth wide
+    let narrow = dpsm_spot(0.5005_f64, 0.5001, 0.5);
+    assert!((narrow - 0.25).abs() < 1e-6, "{narrow}");
     // no cone at all
     assert_eq!([-1.0, 0.0, 1.0].map(|cosine| dpsm_spot(cosine, -2.0, -3.0)), [1.0; 3]);
 }
