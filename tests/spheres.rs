@@ -69,10 +69,10 @@ fn near_that_cuts_a_caster_off_makes_false_light_and_names_it() {
 
 #[test]
 fn far_that_cuts_a_caster_off_names_it() {
-    let frame = hood(Settings { far: Some(1.0), ..settings(Method::Exact) });
+    let frame = hood(Settings { far: Some(10.0), ..settings(Method::Exact) });
     let warnings = frame.warnings();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    assert!(warnings[0].contains("far 1.000e0") && warnings[0].contains("`floor` at 1.414e3"));
+    assert!(warnings[0].contains("far 1.000e1") && warnings[0].contains("`floor` at 1.414e3"));
     assert!(warnings[0].contains("--far") && !warnings[0].contains("hood"), "{warnings:?}");
 }
 
