@@ -8,8 +8,6 @@ mod accessor;
 mod buffers;
 mod container;
 mod document;
-#[cfg_attr(not(feature = "draco"), path = "gltf/no_draco.rs")]
-mod draco;
 mod extensions;
 mod fault;
 mod images;

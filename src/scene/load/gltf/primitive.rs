@@ -1,4 +1,4 @@
-//! One glTF primitive: its attributes, from accessors or decompressed, made into a draft.
+//! One glTF primitive: its attributes made into a draft.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -8,8 +8,7 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use super::accessor::Accessors;
-use super::document::{Extensions, extension};
-use super::draco;
+use super::document::Extensions;
 use super::fault::Fault;
 use super::material::Material;
 use super::morph::Morph;
@@ -56,7 +55,6 @@ pub(super) struct Around<'a> {
 struct Source<'a> {
     primitive: &'a Primitive<'a>,
     accessors: &'a Accessors<'a>,
-    decoded: Option<draco::Decoded>,
 }
 
 const DRACO: &str = "KHR_draco_mesh_compression";
@@ -64,26 +62,16 @@ const DRACO: &str = "KHR_draco_mesh_compression";
 impl<'a> Source<'a> {
     fn new(primitive: &'a Primitive<'a>, accessors: &'a Accessors<'a>) -> Result<Self, Fault> {
         accessors.buffers.document.check(&primitive.extensions)?;
-        let packed = extension::<draco::Packed>(&primitive.extensions, DRACO);
-        let decoded = match packed {
-            Ok(None) => return Ok(Self { primitive, accessors, decoded: None }),
-            Ok(Some(packed)) => draco::Decoded::new(packed, accessors.buffers),
-            Err(what) => Err(what.into()),
-        };
         // the format allows for the data as they are, beside the compressed
         let has_view = |index: &usize| {
             accessors.get(*index).is_ok_and(|accessor| accessor.buffer_view.is_some())
         };
         let mut needed = primitive.attributes.get("POSITION").into_iter().chain(&primitive.indices);
-        match decoded {
-            Ok(decoded) => Ok(Self { primitive, accessors, decoded: Some(decoded) }),
-            Err(_) if needed.all(has_view) => Ok(Self { primitive, accessors, decoded: None }),
-            Err(Fault::Text(what)) => {
-                let remedy = super::extensions::remedy(DRACO);
-                Err(format!("{DRACO} cannot be decoded ({what}): {remedy}").into())
-            }
-            Err(fault) => Err(fault),
+        if !primitive.extensions.contains_key(DRACO) || needed.all(has_view) {
+            return Ok(Self { primitive, accessors });
         }
+        let remedy = super::extensions::remedy(DRACO);
+        Err(format!("{DRACO} is not decoded: {remedy}").into())
     }
 
     /// An attribute's vectors, morphed; `None` if there is no such attribute.
@@ -95,14 +83,7 @@ impl<'a> Source<'a> {
         warn: &mut dyn FnMut(String),
     ) -> Result<Option<Vec<[f64; N]>>, Fault> {
         let Some(&index) = self.primitive.attributes.get(name) else { return Ok(None) };
-        let decoded = match &self.decoded {
-            None => None,
-            Some(decoded) => decoded.vectors(name, self.accessors.get(index)?.normalized)?,
-        };
-        let base = match decoded {
-            Some(vectors) => vectors,
-            None => self.accessors.vectors(index, what)?,
-        };
+        let base = self.accessors.vectors(index, what)?;
         let mut moved = base.clone();
         match morph.add(name, &mut moved, self.accessors) {
             Ok(()) => Ok(Some(moved)),
@@ -114,10 +95,9 @@ impl<'a> Source<'a> {
     }
 
     fn indices(&self, vertices: usize) -> Result<Vec<u32>, Fault> {
-        match (&self.decoded, self.primitive.indices) {
-            (Some(decoded), _) => Ok(decoded.indices()),
-            (None, Some(index)) => self.accessors.integers(index, "indices"),
-            (None, None) => Ok((0..vertices as u32).collect()),
+        match self.primitive.indices {
+            Some(index) => self.accessors.integers(index, "indices"),
+            None => Ok((0..vertices as u32).collect()),
         }
     }
 }
