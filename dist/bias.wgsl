@@ -240,7 +240,7 @@ struct DpsmReceiver {
 const DPSM_RECEIVER_ROUNDING: f32 = 0x1p-17;
 
 /// How far rounding may move a world position that vertices interpolate, for each unit of its largest
-/// coordinate: 16 eps (docs/bias.md).
+/// coordinate: 8 eps (docs/bias.md).
 const DPSM_POSITION_ROUNDING: f32 = 0x1p-20;
 
 /// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.

@@ -147,8 +147,7 @@ fn dpsm_caster_border(guard: f32) -> f32 {
 /// p: flipped light-space position; bias: added to the depth, in units of depth.
 /// Domain: largest |component| of p in [2^-51, 2^63] or p = 0. Bound: position as dpsm_project
 /// plus 3.5 eps relative, depth eps ((11.5 |p| + 5.5 near) / (far - near) + |bias|) absolute, and
-/// eps more for DPSM_REVERSED,
-/// value eps (8 |p| / far + 1) absolute.
+/// eps more for DPSM_REVERSED, value eps (8 |p| / far + 1) absolute.
 fn dpsm_caster_vertex(p: vec3<f32>, light: DpsmLight, bias: f32) -> DpsmCasterVertex {
     let l = length(p);
     let disk = dpsm_project(p) / (1.0 + light.guard);

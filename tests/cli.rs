@@ -347,6 +347,26 @@ fn meshes_that_are_to_cast_no_shadow_are_named_in_every_command() {
 }
 
 #[test]
+fn plans_for_a_spot_keep_its_cone_and_range() {
+    let folder = folder("planned-spot");
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases");
+    let [scene, points] = ["spot.gltf", "spot.csv"].map(|name| cases.join(name));
+    let [scene, points] = [&scene, &points].map(|path| path.to_str().unwrap());
+    let planned = dpsm(&folder, &["plan", scene, "-o", "plan.json"]);
+    assert!(planned.status.success(), "{}", text(&planned.stderr));
+    let probe = |extra: &[&str]| {
+        let common = ["probe", scene, "--points", points, "--adapter", "cpu"];
+        let output = dpsm(&folder, &[&common[..], extra].concat());
+        let lines = text(&output.stdout);
+        let lit = |line: &str| line.starts_with("1,");
+        lines.lines().skip(1).map(lit).collect::<Vec<_>>()
+    };
+    assert_eq!(probe(&["--plan", "plan.json"]), [false, true, true, false, false]);
+    // a light that is moved shines everywhere
+    assert_eq!(probe(&["--light", "0,4,0"]), [false, true, true, true, true]);
+}
+
+#[test]
 fn what_near_or_far_cuts_off_is_named_by_the_commands() {
     let folder = folder("clipped");
     let common = ["--size", "64", "--adapter", "cpu", "--count", "50"];

@@ -12,9 +12,13 @@ use dpsm::render::{
     Bias, Filter, Format, Frame, FrameError, Kernel, Method, Passes, Settings, Taps,
 };
 use dpsm::scalar::depth::{dpsm_depth_stored, dpsm_depth_stored_four};
-use dpsm::scalar::float::Vec4;
+use dpsm::scalar::filter::{DPSM_TAP_HARD, DpsmTaps, dpsm_filter_disk, dpsm_filter_hardware};
+use dpsm::scalar::float::{Vec2, Vec4};
 use dpsm::scalar::light::{DPSM_FORWARD, DPSM_REVERSED};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
+use dpsm::scalar::pcss::dpsm_pcss;
+use dpsm::scalar::plane::dpsm_visibility_plane;
+use dpsm::scalar::raw::{dpsm_raw_disk, dpsm_raw_hardware, dpsm_raw_pcss, dpsm_raw_plane};
 use dpsm::{cpu, scene};
 use glam::Vec3;
 
@@ -106,6 +110,40 @@ fn every_lookup_lights_the_same_points_by_reversed_maps() {
         let apart = plain.iter().zip(&reversed).filter(|(a, b)| (*a - *b).abs() > 0.25).count();
         assert!(apart <= 3, "{name}: {apart}");
     }
+}
+
+#[test]
+fn loads_read_reversed_maps_as_samplers_do() {
+    let frame = room(Settings { method: Method::Exact, reversed: true, ..Settings::default() });
+    let maps = cpu::make_maps(&frame).unwrap();
+    let nearest = DepthMaps { sampling: Sampling::Nearest, ..maps.clone() };
+    let (light, quantum) = (frame.light, frame.settings.quantum());
+    let taps = DpsmTaps { count: 16, kind: DPSM_TAP_HARD, quantum, tolerance: 0.0 };
+    let first = Vec2::new(1.0, 0.0);
+    let truth = truth_of(&frame);
+    let bench = Bench::new(&frame, &maps, &truth);
+    let mut sums = [0.0; 4];
+    for point in points(&frame) {
+        let (p, normal) = bench.receiver(&point);
+        let receiver = frame.receiver(p, normal);
+        let loaded = [
+            dpsm_raw_plane(&maps, p, receiver, light, quantum, 0.0),
+            dpsm_raw_hardware(&maps, p, receiver, light, taps),
+            dpsm_raw_disk(&maps, p, receiver, 0.02, light, taps, first),
+            dpsm_raw_pcss(&maps, p, receiver, light, taps, 0.1, 0.5, first),
+        ];
+        let sampled = [
+            dpsm_visibility_plane(&maps, p, receiver, light, quantum, 0.0),
+            dpsm_filter_hardware(&nearest, p, receiver, light, taps),
+            dpsm_filter_disk(&maps, p, receiver, 0.02, light, taps, first),
+            dpsm_pcss(&maps, p, receiver, light, taps, 0.1, 0.5, first),
+        ];
+        assert_eq!(loaded, sampled, "{p:?}");
+        for (sum, share) in sums.iter_mut().zip(loaded) {
+            *sum += share;
+        }
+    }
+    assert!(sums.iter().all(|lit| (300.0..2700.0).contains(lit)), "{sums:?}");
 }
 
 #[test]

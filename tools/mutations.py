@@ -1473,6 +1473,10 @@ MUTATIONS = [
      "reversed", "adapters_draw_and_read_reversed_maps_as_the_ports_do"),
     ("depth.rs", "T::lit(reversed.into())", "T::lit(0.0)",
      "reversed", "every_lookup_lights_the_same_points_by_reversed_maps"),
+    ("raw.rs", "let depth = dpsm_depth_stored(stored, reversed);", "let depth = stored;",
+     "reversed", "loads_read_reversed_maps_as_samplers_do"),
+    ("src/cli/setup.rs", "moved == Some(light.position);", "moved.is_none();",
+     "cli", "plans_for_a_spot_keep_its_cone_and_range"),
     # spots
     ("shade.rs", "(inner - outer).max(T::lit(0.001))", "(inner - outer)",
      "shade", "spots_fade_between_their_angles"),

@@ -478,8 +478,12 @@ impl SetupArguments {
         };
         settings.leave_out(&no_cast);
         let mut light = scene.default_light();
-        match position {
-            Some(position) => light = light.moved(scene.local(position)),
+        // a plan for the scene's own light keeps its cone and range
+        let moved = position.map(|position| scene.local(position));
+        let own = self.light.is_none() && moved == Some(light.position);
+        match moved.filter(|_| !own) {
+            Some(position) => light = light.moved(position),
+            None if own => {}
             None if scene.lights.len() > 1 => {
                 eprintln!("dpsm: the scene has {} lights; using the first", scene.lights.len());
             }

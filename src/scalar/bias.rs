@@ -28,7 +28,7 @@ pub struct DpsmReceiver<T> {
 pub const DPSM_RECEIVER_ROUNDING: f64 = 1.0 / (1u64 << 17) as f64;
 
 /// How far rounding may move a world position that vertices interpolate, for each unit of its largest
-/// coordinate: 16 eps.
+/// coordinate: 8 eps.
 pub const DPSM_POSITION_ROUNDING: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// What rounding adds to a receiver's and a stored depth for each unit of distance, 24 eps.
