@@ -40,6 +40,15 @@ fn dpsm_receiver_depth(l: f32, near: f32, far: f32) -> f32 {
     return clamp(dpsm_depth(l, near, far), 0.0, 1.0);
 }
 
+// dpsm::edge
+
+/// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
+///
+/// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
+fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
+    return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
+}
+
 // dpsm::light
 
 /// The maps are in layer first_layer: front in `rectangle`, back in the rectangle at its right.
@@ -175,15 +184,6 @@ fn dpsm_texel_width(size: f32, guard: f32) -> f32 {
 /// Domain: r <= 2^63, 0 <= guard <= 1. Bound: 3 eps absolute for r <= 1 + guard.
 fn dpsm_disk_to_texture(uv: vec2<f32>, guard: f32) -> vec2<f32> {
     return 0.5 + 0.5 * vec2<f32>(uv.x, -uv.y) / (1.0 + guard);
-}
-
-// dpsm::edge
-
-/// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
-///
-/// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
-fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
-    return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
 }
 
 // dpsm::visibility

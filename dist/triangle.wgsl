@@ -128,10 +128,6 @@ struct DpsmCasterFragment {
 /// How far on the disk rounding may move an arc: 32 eps (docs/edge.md).
 const DPSM_EDGE_ROUNDING: f32 = 0x1p-18;
 
-/// How far rasterizers may move a chord, in texels: WebGPU's adapters snap vertices to 1/256 texel
-/// or finer, half a step in x and in y at both ends.
-const DPSM_EDGE_SNAP: f32 = 0x1p-8;
-
 /// Smallest distance that is told from 0.
 const DPSM_EDGE_NEAREST: f32 = 0x1p-60;
 
@@ -200,26 +196,6 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
     return quarter * normal_z / (1.0 + sqrt(max(1.0 - square, 0.0)));
 }
 
-/// How far from an edge's arc its chord may be drawn, in disk units: the sagitta in the map of
-/// the ends, and the rasterizer's snapping. The same in both maps, and when turned.
-///
-/// Domain: as for dpsm_edge_normal. Bound: 14 eps absolute for chords up to 1.
-fn dpsm_edge_bow(a: vec3<f32>, b: vec3<f32>, light: DpsmLight) -> f32 {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
-    return snap + abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
-}
-
-/// True where an edge may be drawn as its chord: dpsm_edge_bow is at most 15/16 of tau texels, and
-/// both ends are on one side of the seam. It depends on nothing else, and is the same in both maps,
-/// so the triangles that share the edge agree.
-///
-/// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
-fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
-    let limit = 0.9375 * tau * dpsm_texel_width(light.size, light.guard);
-    return dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= 0.0;
-}
-
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
 ///
 /// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
@@ -227,31 +203,14 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
 }
 
-/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
-/// between it and its chord, at most tau texels, behind the seam 4 tau, so that no hole is left
-/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one
-/// direction, as their triangle covers nothing. An arc that is not moved is exactly negated when
-/// turned.
+/// The line of an edge: its arc. Everything is on the right of it for ends in one direction, as
+/// their triangle covers nothing. Exactly negated when turned.
 ///
-/// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are
-/// within 4 tau of their arcs for ends up to r = 4/3; farther ones may leave holes of the rest.
-fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
+/// Domain: as for dpsm_edge_normal. Bound: rounding moves it by at most DPSM_EDGE_ROUNDING, for ends
+/// up to 155 degrees apart.
+fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);
-    if !(dot(normal, normal) > 0.0) {
-        return vec4<f32>(0.0, 0.0, 0.0, -1.0);
-    }
-    if !dpsm_edge_flat(a, b, light, tau) {
-        return vec4<f32>(0.5 * normal, 0.0);
-    }
-    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
-    if normal.z >= 0.0 {
-        let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
-        return vec4<f32>(0.5 * normal, snap);
-    }
-    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
-    let most = select(16.0 / 15.0, 64.0 / 15.0, a.z + b.z < 0.0);
-    return vec4<f32>(0.5 * normal, most * dpsm_edge_bow(a, b, light));
+    return vec4<f32>(0.5 * normal, select(-1.0, 0.0, dot(normal, normal) > 0.0));
 }
 
 // dpsm::triangle
@@ -262,9 +221,7 @@ fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec
 /// triangle's plane, height (1 + r^2) / (normal . D). A triangle is seen from both sides.
 /// Everything is defined for degenerate input: a triangle without area covers no more than
 /// its edges' rounding.
-/// Points are light space, flipped for the hemisphere that is drawn. tau: edges whose sagitta is
-/// at most tau texels reach to their chords, where flat triangles beside them may end; 0 for exact
-/// arcs everywhere.
+/// Points are light space, flipped for the hemisphere that is drawn.
 /// Source: ray and plane in stereographic coordinates; derivations in docs/triangle.md.
 
 /// What the fragment stage needs of a triangle; the same for all of its fragments.
@@ -275,8 +232,8 @@ struct DpsmTriangle {
     second: vec4<f32>,
     /// Edge from the third to the first.
     third: vec4<f32>,
-    /// Normal times largest distance over height, and the largest distance of a vertex.
-    plane: vec4<f32>,
+    /// Its plane (dpsm_triangle_face).
+    face: vec4<f32>,
     /// Its extent along its longest chord (dpsm_triangle_span).
     span: vec3<f32>,
 }
@@ -324,36 +281,40 @@ fn dpsm_triangle_plane(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(unit, dot(unit, nearest));
 }
 
+/// A triangle's plane as its fragments need it: the normal, turned away from the light, times the
+/// largest distance of a vertex over the height, and that distance.
+///
+/// plane: what dpsm_triangle_plane gives; farthest: the largest distance of a vertex.
+/// Domain: farthest in [2^-50, 2^63]. Bound: 4 eps relative; a height below 2^-60 of the largest
+/// distance counts as that.
+fn dpsm_triangle_face(plane: vec4<f32>, farthest: f32) -> vec4<f32> {
+    // 2^-120: below every share within the domain; all vertices may be at the light
+    let height = max(max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT), 0x1p-120);
+    let outward = select(plane.xyz, -plane.xyz, plane.w < 0.0);
+    return vec4<f32>(outward * (farthest / height), farthest);
+}
+
 /// Prepares a triangle for its fragments.
 ///
 /// Domain: as for dpsm_triangle_plane. Bound: see dpsm_triangle_distance.
-fn dpsm_triangle(
-    a: vec3<f32>,
-    b: vec3<f32>,
-    c: vec3<f32>,
-    light: DpsmLight,
-    tau: f32,
-) -> DpsmTriangle {
+fn dpsm_triangle(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmTriangle {
     let plane = dpsm_triangle_plane(a, b, c);
     let turned = plane.w < 0.0;
     let second = select(b, c, turned);
     let third = select(c, b, turned);
     let farthest = max(max(length(a), length(b)), length(c));
-    // 2^-120: below every share within the domain; all vertices may be at the light
-    let height = max(max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT), 0x1p-120);
-    let outward = select(plane.xyz, -plane.xyz, turned);
     return DpsmTriangle(
-        dpsm_edge_line(a, second, light, tau),
-        dpsm_edge_line(second, third, light, tau),
-        dpsm_edge_line(third, a, light, tau),
-        vec4<f32>(outward * (farthest / height), farthest),
+        dpsm_edge_line(a, second),
+        dpsm_edge_line(second, third),
+        dpsm_edge_line(third, a),
+        dpsm_triangle_face(plane, farthest),
         dpsm_triangle_span(a, b, c, light),
     );
 }
 
 /// The extent of a triangle along its longest chord: a disk point is between the ends where
-/// |dot(span, (u, v, 1))| <= 1. At acute corners it ends what lines that are moved or rounded
-/// would reach beyond them. All of a triangle's arcs are within (docs/triangle.md).
+/// |dot(span, (u, v, 1))| <= 1. At acute corners it ends what rounded lines would reach
+/// beyond them. All of a triangle's arcs are within (docs/triangle.md).
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: zero, so every point is within; its
 /// parts have spans of their own. Domain: as for dpsm_triangle_plane. Bound: DPSM_EDGE_ROUNDING on
@@ -415,15 +376,16 @@ fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
     return inside && abs(dot(triangle.span, vec3<f32>(uv, 1.0))) <= 1.0;
 }
 
-/// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
+/// Radial distance of a triangle's plane in the direction of uv, at most that of its farthest
 /// vertex.
 ///
-/// Domain: r <= 4, inside the triangle. Bound: (24 farthest / sin + 16 l) eps / cos absolute, sin
-/// as for dpsm_triangle_plane, cos that of the angle of incidence.
-fn dpsm_triangle_distance(triangle: DpsmTriangle, uv: vec2<f32>) -> f32 {
+/// face: what dpsm_triangle_face gives. Domain: r <= 4, inside the triangle. Bound:
+/// (24 farthest / sin + 16 l) eps / cos absolute, sin as for dpsm_triangle_plane, cos that of the
+/// angle of incidence.
+fn dpsm_triangle_distance(face: vec4<f32>, uv: vec2<f32>) -> f32 {
     let terms = dpsm_edge_terms(uv);
     let whole = 1.0 + dot(uv, uv);
-    return triangle.plane.w * whole / max(dot(triangle.plane.xyz, terms.xyz), whole);
+    return face.w * whole / max(dot(face.xyz, terms.xyz), whole);
 }
 
 /// The disk coordinates of a fragment's position in a map whose middle is at `middle` texels:
@@ -441,9 +403,9 @@ fn dpsm_triangle_disk(position: vec2<f32>, middle: vec2<f32>, texel: f32) -> vec
 /// Domain: l from dpsm_triangle_distance. Bound: for the plane given, 12 eps relative where cos,
 /// that of the incidence, is above 2^-14.
 fn dpsm_triangle_behind(triangle: DpsmTriangle, l: f32) -> f32 {
-    let steepness = l * length(triangle.plane.xyz) / max(triangle.plane.w, DPSM_EDGE_NEAREST);
+    let steepness = l * length(triangle.face.xyz) / max(triangle.face.w, DPSM_EDGE_NEAREST);
     let share = max(1.0 - 2.0 * DPSM_EDGE_ROUNDING * steepness, DPSM_EDGE_NEAREST);
-    return min(l / share, triangle.plane.w);
+    return min(l / share, triangle.face.w);
 }
 
 /// The fragment of a prepared triangle at uv: its depth, and whether it is kept: inside the
@@ -456,7 +418,7 @@ fn dpsm_triangle_fragment(
     light: DpsmLight,
     bias: f32,
 ) -> DpsmCasterFragment {
-    var l = dpsm_triangle_distance(triangle, uv);
+    var l = dpsm_triangle_distance(triangle.face, uv);
     if dpsm_triangle_inside(triangle, uv) < 0.0 {
         l = dpsm_triangle_behind(triangle, l);
     }
@@ -505,8 +467,8 @@ struct DpsmHull {
 /// tips: a right triangle around the rectangle along its longest chord.
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: a triangle around the whole map.
-/// Domain: as for dpsm_triangle_plane. It holds every point of the
-/// triangle, and of what its lines are moved by all that a chord beside it leaves open.
+/// Domain: as for dpsm_triangle_plane. It holds every point of the triangle, and what rounding moves
+/// its lines by.
 fn dpsm_triangle_hull(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmHull {
     let disk_a = dpsm_project(a);
     let disk_b = dpsm_project(b);

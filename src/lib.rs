@@ -74,7 +74,7 @@ macro_rules! modules {
 }
 modules! {
     "light" "hemisphere" "paraboloid" "depth" "caster" "tessellate" "edge" "triangle" "classify"
-    "visibility" "bias" "plane" "cube" "kernel" "filter" "pcss" "raw" "lights" "shade"
+    "refine" "part" "visibility" "bias" "plane" "cube" "kernel" "filter" "pcss" "raw" "lights" "shade"
 }
 
 /// The module of that name.

@@ -20,8 +20,8 @@ pub use filter::rotation_at;
 pub use picture::Picture;
 pub use projection::{Projection, texel};
 pub use settings::{
-    Bias, Casting, Filter, Format, Kernel, Level, Lookup, MOST_TAPS, Method, Passes, Settings,
-    Taps, constant_bias, depth_tolerance,
+    Bias, Casting, Filter, Format, Kernel, LARGEST_TAU, Level, Lookup, MOST_TAPS, Method, Passes,
+    SMALLEST_TAU, Settings, Taps, constant_bias, depth_tolerance, refinement_levels,
 };
 pub use shine::Shine;
 
@@ -192,6 +192,7 @@ impl Frame {
             return Err(FrameError::Cube { what: "reversed depth", remedy });
         }
         settings.check_passes()?;
+        settings.check_tolerances()?;
         check_filter(&settings)?;
         check_size("--size", settings.size, LARGEST_SIZE)?;
         check_size("image width", settings.image[0], LARGEST_SIZE)?;

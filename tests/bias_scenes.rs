@@ -111,13 +111,15 @@ fn light_that_is_turned_sees_the_same_normals() {
 }
 
 #[test]
-fn depth_tolerance_is_half_the_finest_texel_and_never_what_makes_one_wrong() {
-    assert_eq!(depth_tolerance(256), 9e-4);
-    for size in [2048, 4096, 16384] {
+fn depth_tolerance_is_half_the_finest_texel_of_maps_of_any_size() {
+    for size in [64, 256, 2048, 4096, 16384] {
         // a texel at the rim spans 4 (1 + guard) / (N (1 + 1))
         let rim = 2.0 * (1.0 + guard_band(size)) / size as f32;
         assert_eq!(depth_tolerance(size), 0.5 * rim);
     }
+    assert_eq!(depth_tolerance(4), 1.0 / 16.0);
     let frame = Place::built_in("cornell", 1).frame(Settings { size: 4096, ..Settings::default() });
     assert_eq!(frame.settings.tolerances()[1], depth_tolerance(4096));
+    // an eighth of it may be too near, which is all that receivers allow for
+    assert_eq!(frame.settings.too_near(), 0.125 * depth_tolerance(4096));
 }

@@ -21,14 +21,14 @@ const CAMERA: Camera =
     Camera { eye: vec3(0.0, 2.0, 3.0), target: Vec3::ONE, up: Vec3::Y, vertical_fov: 1.0 };
 
 /// Castings that are dealt out to a scene's meshes in turn.
-const VERTEX_AND_HYBRID: &[Casting] = &[By(Method::Vertex), By(Method::Hybrid), LeftOut];
-const HYBRID_AND_VERTEX: &[Casting] = &[By(Method::Hybrid), By(Method::Vertex)];
-const EXACT_AND_HYBRID: &[Casting] = &[By(Method::Exact), By(Method::Hybrid)];
+const VERTEX_AND_REFINED: &[Casting] = &[By(Method::Vertex), By(Method::Refined), LeftOut];
+const REFINED_AND_VERTEX: &[Casting] = &[By(Method::Refined), By(Method::Vertex)];
+const EXACT_AND_REFINED: &[Casting] = &[By(Method::Exact), By(Method::Refined)];
 const EVERYTHING: &[Casting] = &[
     By(Method::Tessellated),
     By(Method::Exact),
     By(Method::FragmentDepth),
-    By(Method::Hybrid),
+    By(Method::Refined),
     LeftOut,
     By(Method::Vertex),
 ];
@@ -38,7 +38,7 @@ const METHODS: [Method; 6] = [
     Method::FragmentDepth,
     Method::Tessellated,
     Method::Exact,
-    Method::Hybrid,
+    Method::Refined,
     Method::Cube,
 ];
 
@@ -131,26 +131,26 @@ fn meshes_of_a_method_are_few_ranges_and_masked_ones_still_last() {
     let plain = |name| scenes::square(name, 0.0, -1.0, 1.0);
     let meshes = [
         (masked("vertex, masked"), By(Method::Vertex)),
-        (plain("hybrid"), By(Method::Hybrid)),
+        (plain("refined"), By(Method::Refined)),
         (masked("out, masked"), LeftOut),
         (plain("vertex"), By(Method::Vertex)),
         (plain("out"), LeftOut),
-        (masked("hybrid, masked"), By(Method::Hybrid)),
+        (masked("refined, masked"), By(Method::Refined)),
         (plain("vertex too"), By(Method::Vertex)),
     ];
     let (meshes, casting): (Vec<Mesh>, Vec<Casting>) = meshes.into_iter().unzip();
     let frame = scenes::frame_of(meshes, Settings { casting, ..settings() });
     let names: Vec<_> = frame.meshes.iter().map(|(name, _)| &name[..]).collect();
-    let masked = ["hybrid, masked", "vertex, masked", "out, masked"];
-    assert_eq!(names, [&["out", "vertex", "vertex too", "hybrid"][..], &masked[..]].concat());
+    let masked = ["refined, masked", "vertex, masked", "out, masked"];
+    assert_eq!(names, [&["out", "vertex", "vertex too", "refined"][..], &masked[..]].concat());
     assert_eq!((frame.first_masked(), frame.masks.len()), (8, 3));
-    let [vertex, hybrid] = [Method::Vertex, Method::Hybrid];
-    assert_eq!(frame.drawn(), [(2..6, vertex), (6..10, hybrid), (10..12, vertex)]);
+    let [vertex, refined] = [Method::Vertex, Method::Refined];
+    assert_eq!(frame.drawn(), [(2..6, vertex), (6..10, refined), (10..12, vertex)]);
     // what lies between ranges of a method is not drawn with them
     let mut frame = frame;
-    frame.castings[1].1 = By(Method::Hybrid);
+    frame.castings[1].1 = By(Method::Refined);
     frame.castings[2].1 = LeftOut;
-    assert_eq!(frame.drawn(), [(2..4, hybrid), (6..10, hybrid), (10..12, vertex)]);
+    assert_eq!(frame.drawn(), [(2..4, refined), (6..10, refined), (10..12, vertex)]);
     // without castings all are drawn, by the method that the settings have by then
     let mut frame = scenes::frame_of(vec![plain("a"), plain("b")], settings());
     frame.settings.method = Method::Exact;
@@ -162,7 +162,7 @@ fn meshes_of_a_method_are_few_ranges_and_masked_ones_still_last() {
 fn mixed_castings_are_the_nearest_of_each_methods_own_maps() {
     let device = device();
     for scene in built_in() {
-        for castings in [VERTEX_AND_HYBRID, HYBRID_AND_VERTEX, EXACT_AND_HYBRID, EVERYTHING] {
+        for castings in [VERTEX_AND_REFINED, REFINED_AND_VERTEX, EXACT_AND_REFINED, EVERYTHING] {
             let what = format!("{}, {castings:?}", scene.name);
             let mixed = by_ports(&cast(&scene, castings, settings()));
             let apart = nearest(&scene, castings, &settings(), by_ports);
@@ -246,9 +246,8 @@ fn castings_by_one_method_are_that_method() {
 #[test]
 fn mixed_castings_by_multiview_are_those_one_by_one() {
     let Some((device, _alone)) = device() else { return };
-    let castings = [Method::Tessellated, Method::Vertex, Method::FragmentDepth].map(By);
+    let castings = [Method::Tessellated, Method::Vertex, Method::Refined].map(By);
     for scene in built_in() {
-        // the settings' own method has no multiview, but draws nothing
         let frame = |passes| cast(&scene, &castings, Settings { passes, ..settings() });
         let has = device.device.features().contains(wgpu::Features::MULTIVIEW);
         match gpu::make_maps(&device, &frame(Passes::Multiview)) {
@@ -285,11 +284,11 @@ fn mixed_castings_cost_no_pass_but_for_a_second_list() {
         let settings = Settings { passes: passes_by, ..settings() };
         passes(&device, &cast(&scene, castings, settings))
     };
-    for castings in [&[By(Method::Hybrid)], VERTEX_AND_HYBRID, HYBRID_AND_VERTEX, &[LeftOut]] {
+    for castings in [&[By(Method::Refined)], VERTEX_AND_REFINED, REFINED_AND_VERTEX, &[LeftOut]] {
         assert_eq!(of(castings, Passes::Single), 2, "{castings:?}");
         assert_eq!(of(castings, Passes::Atlas), 1, "{castings:?}");
     }
-    // exact, hybrid, and exact ones with masks
+    // exact, refined, and exact ones with masks
     assert_eq!([Passes::Single, Passes::Atlas].map(|passes| of(EVERYTHING, passes)), [6, 3]);
     let cube = Settings { method: Method::Cube, ..settings() };
     assert_eq!(passes(&device, &cast(&scene, &[By(Method::Cube), LeftOut], cube)), 6);
@@ -299,7 +298,7 @@ fn mixed_castings_cost_no_pass_but_for_a_second_list() {
 fn kept_lists_of_mixed_castings_draw_the_maps_again() {
     let Some((device, _alone)) = device() else { return };
     let [scene, _] = built_in();
-    for castings in [VERTEX_AND_HYBRID, EVERYTHING] {
+    for castings in [VERTEX_AND_REFINED, EVERYTHING] {
         let frame = cast(&scene, castings, Settings { keep_lists: true, ..settings() });
         let mut second = frame.light;
         second.position.x += 0.2;
@@ -322,7 +321,7 @@ fn kept_lists_of_mixed_castings_draw_the_maps_again() {
 fn chunks_of_mixed_castings_make_the_maps_of_one() {
     let Some((device, _alone)) = device() else { return };
     // room for a part of the 10,000 at once
-    let bytes = (2000 + (1 << 14)) * 224;
+    let bytes = 1_100_000;
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     let open = |adapter: &wgpu::Adapter| {
@@ -343,7 +342,7 @@ fn chunks_of_mixed_castings_make_the_maps_of_one() {
     let mut scene = crowd(0.0);
     scene.meshes.extend(crowd(0.05).meshes);
     let half = scene.meshes.len() / 2;
-    let methods = [Method::Vertex, Method::Hybrid];
+    let methods = [Method::Vertex, Method::Refined];
     let casting = (0..2 * half).map(|index| By(methods[index / half])).collect();
     let frame = frame(&scene, Settings { casting, ..settings() }).unwrap();
     let [one, many] = [&device, &limited].map(|of| gpu::make_maps(of, &frame).unwrap());
@@ -377,18 +376,18 @@ fn scenes_left_out_altogether_have_empty_maps_and_render() {
 
 #[test]
 fn slack_is_that_of_the_largest_tolerance_of_any_mesh() {
-    let hybrid = [1.0 / 32.0, depth_tolerance(128)];
+    let refined = [0.25, depth_tolerance(128)];
     let of = |method, castings: &[Casting]| {
         Settings { method, casting: castings.to_vec(), ..settings() }.tolerances()
     };
-    assert_eq!(of(Method::Hybrid, &[]), hybrid);
-    assert_eq!(of(Method::Vertex, VERTEX_AND_HYBRID), hybrid);
-    assert_eq!(of(Method::Hybrid, &[By(Method::Exact), LeftOut]), [0.0; 2]);
+    assert_eq!(of(Method::Refined, &[]), refined);
+    assert_eq!(of(Method::Vertex, VERTEX_AND_REFINED), refined);
+    assert_eq!(of(Method::Refined, &[By(Method::Exact), LeftOut]), [0.0; 2]);
     assert_eq!(of(Method::Vertex, &[]), [0.0; 2]);
     // the slack of taps is that of lookups
     let [scene, _] = built_in();
     let settings = Settings { method: Method::Exact, ..settings() };
-    assert_eq!(cast(&scene, VERTEX_AND_HYBRID, settings).taps().tolerance, hybrid[1]);
+    assert_eq!(cast(&scene, VERTEX_AND_REFINED, settings).taps().tolerance, 0.125 * refined[1]);
 }
 
 #[test]
@@ -401,7 +400,7 @@ fn castings_that_do_not_fit_are_refused_by_name() {
     };
     for wrong in [1, count - 1, count + 1] {
         assert_eq!(
-            refused(Method::Hybrid, Passes::Single, vec![LeftOut; wrong]),
+            refused(Method::Refined, Passes::Single, vec![LeftOut; wrong]),
             format!(
                 "{wrong} castings for the {count} meshes of the scene; \
                  give each mesh one, or give none"
@@ -414,23 +413,13 @@ fn castings_that_do_not_fit_are_refused_by_name() {
         castings
     };
     assert_eq!(
-        refused(Method::Cube, Passes::Single, one(Method::Hybrid)),
-        "mesh `lattice` is cast by Hybrid, but the light's maps are the faces of a cube; \
+        refused(Method::Cube, Passes::Single, one(Method::Refined)),
+        "mesh `lattice` is cast by Refined, but the light's maps are the faces of a cube; \
          cast it by Cube, or leave it out"
     );
     assert_eq!(
         refused(Method::Vertex, Passes::Single, one(Method::Cube)),
         "mesh `lattice` is cast by Cube, but the light's maps are paraboloid; \
-         cast it by Vertex, FragmentDepth, Tessellated, Exact or Hybrid, or leave it out"
+         cast it by Vertex, FragmentDepth, Tessellated, Exact or Refined, or leave it out"
     );
-    for method in [Method::Exact, Method::Hybrid] {
-        assert_eq!(
-            refused(Method::Vertex, Passes::Multiview, one(method)),
-            format!(
-                "mesh `lattice` is cast by {method:?}, but that draws a list of triangles for \
-                 each map, without multiview; cast it by Vertex, FragmentDepth or Tessellated, \
-                 or leave it out"
-            )
-        );
-    }
 }

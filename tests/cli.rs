@@ -239,7 +239,6 @@ fn bad_settings_are_refused() {
     let cube = |extra: &[&'static str]| [&with(&["--method", "cube"])[..], extra].concat();
     refused("lookup", &cube(&["--lookup", "vertex"]), &["lookup by vertex", "--lookup pixel"]);
     refused("atlas", &cube(&["--passes", "atlas"]), &["atlas", "--passes single"]);
-    refused("views", &with(&["--passes", "multiview"]), &["hybrid", "--passes atlas", "vertex"]);
     refused("cube-views", &cube(&["--passes", "multiview"]), &["multiview", "--passes single"]);
     refused("passes", &with(&["--passes", "double"]), &["--passes", "atlas"]);
     let level = ["--method", "tessellated", "--level", "0"];
@@ -261,7 +260,7 @@ fn options_that_a_command_would_not_look_at_are_refused() {
     };
     for (option, method) in [
         (&["--level", "4"][..], "tessellated"),
-        (&["--tau", "0.1"][..], "hybrid"),
+        (&["--tau", "0.1"][..], "refined"),
         (&["--no-cull-faces"][..], "cube"),
     ] {
         let named = format!("{} is for --method {method}, not exact", option[0]);
@@ -626,7 +625,7 @@ fn probe_names_the_line_and_column_of_a_bad_point() {
     refused("probe-latin", &probe(&latin), &["latin.csv:3", "UTF-8"]);
     let count = ["measure", "cornell", "--count", "99999999999"];
     refused("measure-count", &count, &["--count"]);
-    for tau in ["-0.1", "5", "nan", "wide"] {
+    for tau in ["-0.1", "0", "0.01", "5", "nan", "wide"] {
         refused("measure-tau", &["measure", "cornell", "--tau", tau], &["--tau", tau]);
     }
     refused("bake-name", &["bake", "cornell", "-o", "maps.png"], &["maps.png", "EXR"]);
@@ -687,8 +686,8 @@ fn measure_reports_the_same_in_a_table_and_in_json() {
 }
 
 #[test]
-fn tau_is_the_methods_and_hybrid_maps_are_judged_by_it() {
-    let folder = folder("measure-hybrid");
+fn tau_is_the_methods_and_refined_maps_are_judged_by_it() {
+    let folder = folder("measure-refined");
     let measure = |extra: &[&str]| {
         let common = ["measure", "brabec-room", "--walls", "1", "--adapter", "cpu"];
         let small = ["--size", "64", "--count", "50"];
@@ -697,7 +696,7 @@ fn tau_is_the_methods_and_hybrid_maps_are_judged_by_it() {
         text(&output.stdout)
     };
     for (extra, tau) in
-        [(&[][..], 1.0_f32 / 32.0), (&["--tau", "0.25"], 0.25), (&["--method", "exact"], 0.0)]
+        [(&[][..], 0.25_f32), (&["--tau", "0.5"], 0.5), (&["--method", "exact"], 0.0)]
     {
         let json: serde_json::Value =
             serde_json::from_str(&measure(&[extra, &["--json"]].concat())).unwrap();

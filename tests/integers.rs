@@ -4,11 +4,11 @@ mod common;
 
 use common::rng;
 use dpsm::cases::light;
-use dpsm::scalar::classify::{DpsmPart, dpsm_classify_half, dpsm_classify_part};
 use dpsm::scalar::edge::dpsm_edge_unit;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::hemisphere::dpsm_hemisphere;
 use dpsm::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DpsmLight, dpsm_light_layer};
+use dpsm::scalar::part::{DpsmPart, dpsm_part, dpsm_part_half};
 use dpsm::scalar::ports::{self, Flat, Word};
 
 /// A record of these arguments.
@@ -164,20 +164,20 @@ fn every_bit_of_the_longest_path_chooses_a_half() {
     let mut paths = vec![1, 2, 3, 1 << 31, u32::MAX, 0xaaaa_aaaa, (1 << 31) + 1];
     paths.extend((1..32).map(|bit| (1 << 31) | (1 << (bit - 1))));
     let records: Vec<_> = paths.iter().map(|&path| record((corners, path))).collect();
-    for (result, path) in both("dpsm_classify_part", &records).iter().zip(&paths) {
+    for (result, path) in both("dpsm_part", &records).iter().zip(&paths) {
         let [a, b, c] = corners.map(dpsm_edge_unit);
         let digits = format!("{path:b}");
         let part = digits
             .bytes()
             .skip(1)
-            .fold(DpsmPart { a, b, c }, |part, digit| dpsm_classify_half(part, digit == b'1'));
+            .fold(DpsmPart { a, b, c }, |part, digit| dpsm_part_half(part, digit == b'1'));
         assert_eq!(bits(result), bits(&record(part)), "{path:b}");
     }
     // a path's last bit tells its end from its neighbour's until rounding does not: 24 halvings
     let [near, beside] = [1 << 20, (1 << 20) + 1];
     assert_ne!(
-        dpsm_classify_part(corners[0], corners[1], corners[2], near),
-        dpsm_classify_part(corners[0], corners[1], corners[2], beside)
+        dpsm_part(corners[0], corners[1], corners[2], near),
+        dpsm_part(corners[0], corners[1], corners[2], beside)
     );
 }
 

@@ -56,7 +56,7 @@ fn broken_and_different_answers_are_counted_and_their_inputs_kept() {
 
 #[test]
 fn answers_judged_by_intervals_are_sampled_and_different_ones_always_judged() {
-    let judge = judge("dpsm_edge_bow");
+    let judge = judge("dpsm_refine_reach");
     let (records, mut answers) = answered(&judge, 1);
     let right = judge_all(&judge, &records, &answers);
     // one in sixteen of those in the domain, give or take

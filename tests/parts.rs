@@ -6,10 +6,10 @@ mod common;
 use common::exact::{Corners, direction, inside, meet, triangle};
 use common::{CASES, EPS, light, rng};
 use dpsm::scalar::caster::dpsm_caster_border;
-use dpsm::scalar::classify::*;
 use dpsm::scalar::float::{Vec2, Vec3};
 use dpsm::scalar::light::DpsmLight;
 use dpsm::scalar::paraboloid::dpsm_project;
+use dpsm::scalar::part::*;
 use dpsm::scalar::triangle::*;
 
 fn corners(part: DpsmPart<f32>) -> Corners {
@@ -34,7 +34,7 @@ fn halves_partition_their_triangle() {
         let Some(truth) = meet(wide, p / p.length()) else { continue };
         // as many halvings as corners stay accurate for: 12 eps each, over edges of 2^-6
         let deep = rng.u32(1..7);
-        let whole = dpsm_classify_part(a, b, c, 1);
+        let whole = dpsm_part(a, b, c, 1);
         let narrow = corners(whole);
         let [i, j, k] = narrow;
         let small = i.cross(j).dot(k).abs() < 1e-3;
@@ -45,7 +45,7 @@ fn halves_partition_their_triangle() {
         let band = 1e-4;
         let holders: Vec<_> = ((1 << deep)..(2 << deep))
             .filter_map(|path| {
-                let depth = depth_inside(corners(dpsm_classify_part(a, b, c, path)), d);
+                let depth = depth_inside(corners(dpsm_part(a, b, c, path)), d);
                 (depth > -band).then_some(depth)
             })
             .collect();
@@ -64,11 +64,11 @@ fn a_half_has_half_of_the_longest_edge() {
     let mut rng = rng("half");
     for _ in 0..CASES {
         let [a, b, c] = triangle(&mut rng);
-        let part = dpsm_classify_part(a, b, c, 1);
+        let part = dpsm_part(a, b, c, 1);
         let square = |p: Vec3<f32>, q: Vec3<f32>| (q - p).dot(q - p);
         let longest =
             square(part.a, part.b).max(square(part.b, part.c)).max(square(part.c, part.a));
-        let (first, second) = (dpsm_classify_half(part, false), dpsm_classify_half(part, true));
+        let (first, second) = (dpsm_part_half(part, false), dpsm_part_half(part, true));
         assert_eq!((first.a, first.c), (second.b, second.c), "the middle is shared");
         assert_eq!(square(second.a, first.b), longest, "{part:?}");
         let [from, to, middle] = [second.a, first.b, first.a].map(Vec3::widen);
@@ -86,10 +86,10 @@ fn no_part_is_culled_that_touches_the_stored_disk() {
     let mut kinds = [0; 5];
     for _ in 0..CASES {
         let ([a, b, c], light) = (triangle(&mut rng), light(&mut rng));
-        let part = dpsm_classify_part(a, b, c, rng.u32(1..64));
-        let kind = dpsm_classify_kind(part, light);
+        let part = dpsm_part(a, b, c, rng.u32(1..64));
+        let kind = dpsm_part_kind(part, light);
         kinds[kind as usize] += 1;
-        if kind == DPSM_CULLED {
+        if kind == DPSM_PART_OUTSIDE {
             let border = f64::from(dpsm_caster_border(light.guard));
             let p = inside(&mut rng, corners(part));
             let [on_edge, to, corner] = corners(part);
@@ -100,7 +100,11 @@ fn no_part_is_culled_that_touches_the_stored_disk() {
         }
     }
     println!("{kinds:?}");
-    assert!([DPSM_CULLED, DPSM_CURVED, DPSM_LARGE].iter().all(|&k| kinds[k as usize] > CASES / 50));
+    assert!(
+        [DPSM_PART_OUTSIDE, DPSM_PART_DRAWN, DPSM_PART_LARGE]
+            .iter()
+            .all(|&k| kinds[k as usize] > CASES / 50)
+    );
 }
 
 fn holds(hull: DpsmHull<f32>, p: Vec2<f64>) -> bool {
@@ -114,11 +118,11 @@ fn holds(hull: DpsmHull<f32>, p: Vec2<f64>) -> bool {
 fn hulls([a, b, c]: [Vec3<f32>; 3], light: DpsmLight<f32>) -> (Vec<DpsmHull<f32>>, bool) {
     let (mut paths, mut found) = (vec![1], Vec::new());
     while let Some(path) = paths.pop() {
-        let part = dpsm_classify_part(a, b, c, path);
-        match dpsm_classify_kind(part, light) {
-            DPSM_LARGE if path >= 1 << 20 => return (found, true),
-            DPSM_LARGE => paths.extend([2 * path, 2 * path + 1]),
-            DPSM_CURVED => found.push(dpsm_triangle_hull(part.a, part.b, part.c, light)),
+        let part = dpsm_part(a, b, c, path);
+        match dpsm_part_kind(part, light) {
+            DPSM_PART_LARGE if path >= 1 << 20 => return (found, true),
+            DPSM_PART_LARGE => paths.extend([2 * path, 2 * path + 1]),
+            DPSM_PART_DRAWN => found.push(dpsm_triangle_hull(part.a, part.b, part.c, light)),
             _ => {}
         }
     }

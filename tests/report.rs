@@ -59,7 +59,7 @@ fn figures_stand_in_their_line_with_their_unit() {
         assert_eq!(found.len(), 1, "{place:?}");
         (found[0][5].as_str(), found[0][6].as_str())
     };
-    let name = "hybrid 1024 hardware";
+    let name = "refined 1024 hardware";
     let variant = report.scenes[1].variants.iter().find(|v| v.name == name).unwrap();
     let making = variant.generation.median.to_string();
     assert_eq!(
@@ -175,12 +175,12 @@ fn runs_of_the_same_speed_show_no_change() {
 fn a_slower_variant_is_named_with_its_ratio() {
     let mut rng = fastrand::Rng::with_seed(8);
     let (a, mut b) = (report(), report());
-    let variant = b.scenes[0].variants.iter_mut().find(|v| v.name == "hybrid 512 hard").unwrap();
+    let variant = b.scenes[0].variants.iter_mut().find(|v| v.name == "refined 512 hard").unwrap();
     let before = variant.generation;
     variant.generation = times(before.median * 1.2, 0.01);
     variant.lookup = times(variant.lookup.median * 1.005, 0.05);
     let text = compare(&a, &b).unwrap();
-    assert!(text.contains(", 1 changed\n  brabec-room: hybrid 512 hard: making, ms"), "{text}");
+    assert!(text.contains(", 1 changed\n  brabec-room: refined 512 hard: making, ms"), "{text}");
     assert!(text.contains("times 1.20\n"), "{text}");
     let same = compare(&again(&mut rng), &a).unwrap();
     assert!(!same.contains("times: 250 compared, 0 changed"), "{same}");

@@ -136,7 +136,7 @@ fn check(report: &Report, runs: u32) {
             }
             assert!(e.edge_texels_median <= e.edge_texels_largest, "{name}: {e:?}");
             // straight edges between 2 triangles' corners may be wrong anywhere
-            let right = ["exact", "hybrid", "cube"].contains(&variant.method.as_str());
+            let right = ["exact", "refined", "cube"].contains(&variant.method.as_str());
             assert!(!right || e.faults < 0.01 && e.misclassified() < 0.5, "{name}: {e:?}");
             match variant.dominated_by.as_str() {
                 "" => {
@@ -148,7 +148,7 @@ fn check(report: &Report, runs: u32) {
         }
         let plans = scene.variants.iter().filter(|variant| variant.role == Role::Plan);
         assert!(plans.count() == 1 && scene.plan.len() == 9, "{}: {:?}", scene.name, scene.plan);
-        let methods = ["vertex", "fragment-depth", "tessellated", "exact", "hybrid", "cube"];
+        let methods = ["vertex", "fragment-depth", "tessellated", "exact", "refined", "cube"];
         for method in methods {
             assert!(scene.variants.iter().any(|variant| variant.method == method), "{method}");
         }
@@ -157,20 +157,20 @@ fn check(report: &Report, runs: u32) {
         }
         // at equal memory a cube has as many texels, to the rounding of its faces
         let equal =
-            |v: &&Variant| v.method == "hybrid" && v.format == "d32" && v.filter == "single";
-        for hybrid in scene.variants.iter().filter(equal).rev().take(1) {
+            |v: &&Variant| v.method == "refined" && v.format == "d32" && v.filter == "single";
+        for refined in scene.variants.iter().filter(equal).rev().take(1) {
             let as_large = |v: &&Variant| {
-                let ratio = v.texels as f64 / hybrid.texels as f64;
+                let ratio = v.texels as f64 / refined.texels as f64;
                 v.role == Role::Cube && (ratio - 1.0).abs() < 0.1
             };
             let half = scene.variants.iter().filter(as_large).count();
             let middle = scene.variants.iter().any(|v| {
-                let ratio = 4.0 * v.texels as f64 / hybrid.texels as f64;
+                let ratio = 4.0 * v.texels as f64 / refined.texels as f64;
                 v.role == Role::Cube && (ratio - 1.0).abs() < 0.1
             });
             assert!(half == 1 || middle, "{}: no cube as large", scene.name);
             // and at equal worst texel faces half as wide
-            let half = |v: &Variant| v.role == Role::Cube && 2 * v.size == hybrid.size;
+            let half = |v: &Variant| v.role == Role::Cube && 2 * v.size == refined.size;
             assert!(scene.variants.iter().any(half), "{}: no cube as fine", scene.name);
         }
         for source in &scene.sources {
@@ -205,8 +205,8 @@ fn ports_report_on_scenes_with_one_hemisphere_and_with_two() {
     assert!(ceiling.hemispherical && !room.hemispherical);
     // walls of two triangles: the original method cannot, the default can
     let error = |name: &str| room.variants.iter().find(|v| v.name == name).unwrap().error;
-    assert_eq!(error("hybrid 64").faults, 0.0);
-    let [original, ours] = ["fragment-depth 32", "hybrid 64"].map(error);
+    assert_eq!(error("refined 64").faults, 0.0);
+    let [original, ours] = ["fragment-depth 32", "refined 64"].map(error);
     println!("{original:?} {ours:?}");
     assert!(original.acne > 0.05 && ours.acne == 0.0, "{original:?} {ours:?}");
     let html = std::fs::read_to_string(folder.join("dpsm-report/report.html")).unwrap();

@@ -23,7 +23,7 @@ use dpsm::{cpu, scene};
 use glam::Vec3;
 
 const METHODS: [Method; 5] =
-    [Method::Vertex, Method::FragmentDepth, Method::Tessellated, Method::Exact, Method::Hybrid];
+    [Method::Vertex, Method::FragmentDepth, Method::Tessellated, Method::Exact, Method::Refined];
 
 /// Half of what 1 less a depth is rounded by, twice.
 const STEP: f32 = 1.0 / (1 << 24) as f32;
@@ -153,7 +153,7 @@ fn adapters_draw_and_read_reversed_maps_as_the_ports_do() {
     for (name, settings) in lookups() {
         for (method, passes) in [
             (Method::Exact, Passes::Single),
-            (Method::Hybrid, Passes::Atlas),
+            (Method::Refined, Passes::Atlas),
             (Method::Vertex, Passes::Single),
         ] {
             let settings = Settings { method, passes, reversed: true, ..settings.clone() };

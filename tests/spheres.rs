@@ -17,7 +17,7 @@ const METHODS: [Method; 6] = [
     Method::FragmentDepth,
     Method::Tessellated,
     Method::Exact,
-    Method::Hybrid,
+    Method::Refined,
     Method::Cube,
 ];
 
@@ -133,7 +133,7 @@ fn floors_of_huge_ranges_are_lit_and_what_stands_on_them_casts() {
         (Method::Exact, Filter::Single, Bias::Plane),
         (Method::Exact, Filter::Single, Bias::TexelCentre),
         (
-            Method::Hybrid,
+            Method::Refined,
             Filter::Soft { taps: 16, radius: Some(1e-4), nearest: Some(0.5) },
             Bias::Plane,
         ),

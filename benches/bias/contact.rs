@@ -110,7 +110,7 @@ fn facing(p: Vec3<f32>, normal: Vec3<f32>) -> Vec3<f32> {
 
 pub fn contact(device: &Device) -> Result<(), GpuError> {
     println!(
-        "\n{POINTS} points spread over all surfaces, {SIZE} x {SIZE}, D32, hybrid, hard test\n"
+        "\n{POINTS} points spread over all surfaces, {SIZE} x {SIZE}, D32, refined, hard test\n"
     );
     println!("| scene | bias | faults: shadow, light | false shadow | false light | contact gap |");
     println!("|---|---|---|---|---|---|");

@@ -41,7 +41,7 @@ pub fn faults(device: &Device) -> Result<(), GpuError> {
         ("constant", Bias::Constant(None), single),
         ("one tap of the disk", Bias::TexelCentre, tap),
     ];
-    let methods = [("exact", Method::Exact), ("hybrid", Method::Hybrid)];
+    let methods = [("exact", Method::Exact), ("refined", Method::Refined)];
     for place in &places() {
         let base = place.frame(Settings::default());
         let truth = truth_of(&base);

@@ -14,9 +14,9 @@ const RUNS: usize = 7;
 /// The curves: name, method, what is recorded.
 const CURVES: [(&str, Method, Parts); 5] = [
     ("vertex", Method::Vertex, Parts::ALL),
-    ("exact, sorted each frame", Method::Exact, Parts::ALL),
-    ("hybrid, sorted each frame", Method::Hybrid, Parts::ALL),
-    ("hybrid, lists kept", Method::Hybrid, KEPT),
+    ("exact, lists each frame", Method::Exact, Parts::ALL),
+    ("refined each frame", Method::Refined, Parts::ALL),
+    ("refined, lists kept", Method::Refined, KEPT),
     ("cube, faces culled, lists kept", Method::Cube, KEPT),
 ];
 
@@ -94,7 +94,7 @@ pub fn lights(device: &Device) -> Result<(), GpuError> {
             };
             let lights: Vec<_> = (0..count).map(light).collect();
             let maps = ShadowMaps::with_lights(device, &frame, &mesh, &lights)?;
-            Ok(Variant { name: name.into(), maps, parts })
+            Ok(Variant::of(name, maps, parts))
         };
         let variants = CURVES.into_iter().map(variant).collect::<Result<Vec<_>, GpuError>>()?;
         Ok(time(device, &mesh, &variants, RUNS)?.iter().map(|t| t.median).collect())

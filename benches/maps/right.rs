@@ -42,7 +42,7 @@ pub fn right(device: &Device) -> Result<(), GpuError> {
             for _ in 0..poses {
                 let light = position(place, &truth, &mut rng);
                 let turn = rotation(&mut rng);
-                for (method, sum) in [Method::Exact, Method::Hybrid].into_iter().zip(&mut sums) {
+                for (method, sum) in [Method::Exact, Method::Refined].into_iter().zip(&mut sums) {
                     let frame = posed(
                         place,
                         Settings { method, size, ..base.settings.clone() },
@@ -63,7 +63,7 @@ pub fn right(device: &Device) -> Result<(), GpuError> {
                     }
                 }
             }
-            for (name, s) in ["exact", "hybrid"].into_iter().zip(sums) {
+            for (name, s) in ["exact", "refined"].into_iter().zip(sums) {
                 println!(
                     "| {} | {size} | {poses} | {name} | {} | {} | {} | {} | {} | {:.1e} | {:.1e} |",
                     place.scene.name,

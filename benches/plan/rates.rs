@@ -42,8 +42,8 @@ pub fn rates() -> Result<(), Box<dyn std::error::Error>> {
                     }
                     Ok((least, frame))
                 };
-                let (hybrid, frame) = time(Method::Hybrid)?;
-                exact.push(time(Method::Exact)?.0 / hybrid);
+                let (refined, frame) = time(Method::Refined)?;
+                exact.push(time(Method::Exact)?.0 / refined);
                 let p = frame.light.position;
                 let axis = frame.light.forward;
                 let seen = cost::seen(&place.scene, &kept, Vec3::new(p.x, p.y, p.z).as_dvec3());
@@ -52,7 +52,7 @@ pub fn rates() -> Result<(), Box<dyn std::error::Error>> {
                 let row = std::array::from_fn(|i| generation(&unit(i), loads, seen.len(), size));
                 let name = format!("{}, {size}, {maps}", place.name);
                 straight.push((name.clone(), row, time(Method::Vertex)?.0));
-                rows.push((name, row, hybrid));
+                rows.push((name, row, refined));
             }
         }
     }
@@ -65,7 +65,7 @@ pub fn rates() -> Result<(), Box<dyn std::error::Error>> {
         println!("| {name} | {time:.2} | {predicted:.2} | {:.2} |", predicted / time);
         ratios.push(predicted / time);
     }
-    for (what, ratios) in [("predicted of measured", &mut ratios), ("exact of hybrid", &mut exact)]
+    for (what, ratios) in [("predicted of measured", &mut ratios), ("exact of refined", &mut exact)]
     {
         ratios.sort_by(f64::total_cmp);
         let at = |share: f64| ratios[((ratios.len() - 1) as f64 * share) as usize];

@@ -362,7 +362,7 @@ impl Pose<'_> {
 }
 
 /// Methods that the sweep tries.
-const METHODS: [Method; 2] = [Method::Hybrid, Method::Vertex];
+const METHODS: [Method; 2] = [Method::Refined, Method::Vertex];
 
 fn frame_view(camera: Camera) -> dpsm::render::View {
     dpsm::render::View::new(&camera, Settings::default().image).expect("a usable camera")

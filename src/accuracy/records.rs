@@ -2,13 +2,14 @@
 
 use crate::reflect::{Kind, Shape, Signature};
 use crate::scalar::bias::{DPSM_RECEIVER_ROUNDING, dpsm_receiver};
-use crate::scalar::classify::dpsm_classify_part;
+use crate::scalar::classify::dpsm_projected;
 use crate::scalar::filter::{DpsmTaps, dpsm_filter_cone, dpsm_filter_reader};
 use crate::scalar::float::{Vec2, Vec3};
 use crate::scalar::kernel::dpsm_kernel;
+use crate::scalar::part::dpsm_part;
 use crate::scalar::plane::{DpsmPlane, dpsm_plane};
 use crate::scalar::ports::{Flat, Word};
-use crate::scalar::triangle::dpsm_triangle;
+use crate::scalar::triangle::{dpsm_triangle, dpsm_triangle_face};
 use fastrand::Rng;
 
 use super::random::{light, nearby, point, spread, uniform, unit};
@@ -37,10 +38,9 @@ impl Records {
             arguments: signature.arguments.iter().map(kinds).collect(),
             centred: signature.arguments.iter().any(|(name, _)| named(name)),
             counted: signature.arguments.iter().any(|(name, _)| name == "count"),
-            cornered: signature
-                .arguments
-                .iter()
-                .any(|(name, _)| ["a", "b", "triangle", "part"].contains(&name.as_str())),
+            cornered: signature.arguments.iter().any(|(name, _)| {
+                ["a", "b", "triangle", "part", "first", "start"].contains(&name.as_str())
+            }),
         }
     }
 
@@ -62,6 +62,10 @@ impl Records {
                 ("index", 1) if self.counted => words.push(Word::Integer(rng.u32(0..1024))),
                 ("index", 1) => words.push(Word::Integer(rng.u32(0..15_000))),
                 // as many halvings as it has binary digits behind the first, evenly
+                // one of a triangle's edges' seven sets, a part's number, a corner's
+                ("split" | "halves", 1) => words.push(Word::Integer(rng.u32(1..8))),
+                ("part", 1) => words.push(Word::Integer(rng.u32(0..4))),
+                ("a" | "b" | "corner", 1) => words.push(Word::Integer(rng.u32(0..6))),
                 ("path", 1) => words.push(Word::Integer(1 + (rng.u32(0..4095) >> rng.u32(0..12)))),
                 ("weights", 3) if integers => {
                     words.extend([0; 3].map(|_| Word::Integer(rng.u32(0..9))))
@@ -183,6 +187,15 @@ impl Records {
                 ("bow" | "bow_before" | "bow_after", 1) => {
                     spread(rng, -20, 0).abs().write(&mut words)
                 }
+                ("reach", 1) => spread(rng, -20, -4).abs().write(&mut words),
+                ("face", 4) => {
+                    let farthest = spread(rng, -24, 24).abs();
+                    let height = farthest * spread(rng, -20, 0).abs().min(1.0);
+                    dpsm_triangle_face(unit(rng).extend(height), farthest).write(&mut words);
+                }
+                ("first" | "start", 6) => dpsm_projected(corner_a).write(&mut words),
+                ("second" | "end", 6) => dpsm_projected(corner_b).write(&mut words),
+                ("third", 6) => dpsm_projected(corner_c).write(&mut words),
                 ("a", 3) => corner_a.write(&mut words),
                 ("b", 3) => corner_b.write(&mut words),
                 ("weights", 3) => {
@@ -196,11 +209,10 @@ impl Records {
                 ("c", 3) => corner_c.write(&mut words),
                 ("triangle", 19) => {
                     let light = light(rng);
-                    dpsm_triangle(corner_a, corner_b, corner_c, light, rng.f32()).write(&mut words);
+                    dpsm_triangle(corner_a, corner_b, corner_c, light).write(&mut words);
                 }
                 ("part", 9) => {
-                    dpsm_classify_part(corner_a, corner_b, corner_c, rng.u32(1..4096))
-                        .write(&mut words);
+                    dpsm_part(corner_a, corner_b, corner_c, rng.u32(1..4096)).write(&mut words);
                 }
                 ("a", 2) => disk_a.write(&mut words),
                 ("b" | "c", 2) => beside(disk_a, rng).write(&mut words),

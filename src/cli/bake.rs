@@ -85,7 +85,7 @@ pub fn bake(adapter: AdapterChoice, arguments: &BakeArguments) -> Result<(), Cli
         "filter": names.filter,
         "bias": names.bias,
         "constant_bias": frame.constant_bias(),
-        "depth_tolerance": frame.settings.tolerances()[1],
+        "depth_tolerance": frame.settings.too_near(),
         "computed_by": describe(device.as_ref()),
     });
     let mut outputs = Outputs::for_option("-o");

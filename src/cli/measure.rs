@@ -23,7 +23,7 @@ use super::{AdapterChoice, CliError, describe};
 #[command(after_help = "\
 What is wrong, acne and leaks first, then the errors of shadows, penumbrae and maps, and their sources;
 docs/measure.md explains each figure.
-Hybrid maps are judged with the tolerance that they are made with, --tau, and all others with 0: a
+Refined maps are judged with the tolerance that they are made with, --tau, and all others with 0: a
 silhouette so many texels outside a texel excuses its error.
 
 Examples:

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dpsm::gpu::{self, Device};
-use dpsm::measure::MAX_TAU;
 use dpsm::plan::Plan;
-use dpsm::render::{Bias, Filter, Format, Frame, Kernel, Level, Method, Passes, Settings, Taps};
+use dpsm::render::{
+    Bias, Filter, Format, Frame, Kernel, LARGEST_TAU, Level, Method, Passes, SMALLEST_TAU,
+    Settings, Taps,
+};
 use dpsm::scalar::maps::{DepthMaps, Sampling};
 use dpsm::scene::{self, Options, Scene};
 use dpsm::{cpu, render};
@@ -54,10 +56,10 @@ pub struct SetupArguments {
     #[arg(long, value_enum, default_value = "d32")]
     format: FormatName,
     /// How the maps are made
-    #[arg(long, value_enum, default_value = "hybrid")]
+    #[arg(long, value_enum, default_value = "refined")]
     method: MethodName,
-    /// For hybrid: how far off an edge may be drawn, in texels, 0 to 4, by default 1/32; `measure` judges
-    /// the maps by it too
+    /// For refined: how far off an edge may be drawn, in texels, 1/64 to 4, by default 1/4; `measure`
+    /// judges the maps by it too
     #[arg(long, value_name = "TEXELS", value_parser = parse_tau, allow_negative_numbers = true)]
     tau: Option<f32>,
     /// For tessellated: each triangle into N x N; by default each mesh as tau asks
@@ -143,8 +145,8 @@ enum MethodName {
     Tessellated,
     /// Each triangle as its arcs bound it, its distance by texel
     Exact,
-    /// Flat triangles where they are enough, exact ones elsewhere
-    Hybrid,
+    /// Edges split until they lie within tau of their arcs, then plain triangles
+    Refined,
     /// Six perspective faces, to compare with
     Cube,
 }
@@ -163,9 +165,9 @@ enum PassesName {
 /// Parses a tolerance in texels.
 fn parse_tau(text: &str) -> Result<f32, String> {
     let tau: f32 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
-    match (0.0..=MAX_TAU).contains(&f64::from(tau)) {
+    match (SMALLEST_TAU..=LARGEST_TAU).contains(&tau) {
         true => Ok(tau),
-        false => Err(format!("`{text}` is not from 0 to {MAX_TAU} texels")),
+        false => Err(format!("`{text}` is not from {SMALLEST_TAU} to {LARGEST_TAU} texels")),
     }
 }
 
@@ -282,7 +284,7 @@ impl MethodName {
             Method::FragmentDepth => Self::FragmentDepth,
             Method::Tessellated => Self::Tessellated,
             Method::Exact => Self::Exact,
-            Method::Hybrid => Self::Hybrid,
+            Method::Refined => Self::Refined,
             Method::Cube => Self::Cube,
         }
     }
@@ -411,7 +413,7 @@ impl SetupArguments {
     fn check_method(&self) -> Result<(), CliError> {
         use MethodName as Name;
         let others = [
-            ("--tau", self.tau.is_some(), Name::Hybrid),
+            ("--tau", self.tau.is_some(), Name::Refined),
             ("--level", self.level.is_some(), Name::Tessellated),
             ("--no-cull-faces", self.no_cull_faces, Name::Cube),
         ];
@@ -442,7 +444,7 @@ impl SetupArguments {
                 MethodName::FragmentDepth => Method::FragmentDepth,
                 MethodName::Tessellated => Method::Tessellated,
                 MethodName::Exact => Method::Exact,
-                MethodName::Hybrid => Method::Hybrid,
+                MethodName::Refined => Method::Refined,
                 MethodName::Cube => Method::Cube,
             },
             tau: self.tau.unwrap_or(Settings::default().tau),

@@ -2,21 +2,21 @@
 
 use std::ops::Range;
 
+use super::refined::leaves;
 use super::{mix, opaque, pick, triangle, vector, words};
 use crate::render::{Frame, FrameError, Method, Projection, Vertex, common, float};
 use crate::scalar::caster::{dpsm_caster_fragment, dpsm_caster_keep, dpsm_caster_vertex};
-use crate::scalar::classify::{
-    DPSM_CULLED, DPSM_CURVED, DPSM_FLAT, DPSM_IN_BACK, DPSM_IN_FRONT, DPSM_LARGE, DPSM_STEEP,
-    DPSM_STRADDLING, dpsm_classify, dpsm_classify_kind, dpsm_classify_part,
-};
+use crate::scalar::classify::{DPSM_IN_BACK, DPSM_IN_FRONT, dpsm_classify, dpsm_projected};
 use crate::scalar::depth::{dpsm_depth, dpsm_depth_stored};
 use crate::scalar::float::{Vec2, Vec3, Vec4};
-use crate::scalar::hemisphere::{DPSM_FRONT, dpsm_flip, dpsm_to_light};
+use crate::scalar::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip, dpsm_to_light};
 use crate::scalar::paraboloid::dpsm_texel_width;
+use crate::scalar::part::{DPSM_PART_DRAWN, DPSM_PART_LARGE, dpsm_part, dpsm_part_kind};
+use crate::scalar::refine::dpsm_refine_clip;
 use crate::scalar::tessellate::{dpsm_tessellate_point, dpsm_tessellate_weights};
 use crate::scalar::triangle::{
     dpsm_triangle, dpsm_triangle_disk, dpsm_triangle_distance, dpsm_triangle_fragment,
-    dpsm_triangle_hull, dpsm_triangle_span, dpsm_triangle_weights,
+    dpsm_triangle_hull, dpsm_triangle_plane, dpsm_triangle_span, dpsm_triangle_weights,
 };
 
 /// The maps store true distances; the bias is the receiver's, so that it may differ by receiver.
@@ -36,7 +36,8 @@ pub fn map_pass(frame: &Frame, map: u32, layer: &mut [f32]) -> Result<(), FrameE
         match method {
             Method::Vertex | Method::FragmentDepth => target.straight(triangles, method),
             Method::Tessellated => target.tessellated(triangles)?,
-            Method::Exact | Method::Hybrid => target.sorted(triangles, method),
+            Method::Exact => target.exact(triangles),
+            Method::Refined => target.refined(triangles),
             // `Frame::new` lets none in
             Method::Cube => {}
         }
@@ -136,72 +137,81 @@ impl Target<'_> {
         Ok(())
     }
 
-    /// The exact and hybrid methods: as classify.wesl sorts and caster.wesl draws.
-    fn sorted(&mut self, triangles: Range<u32>, method: Method) {
-        let Frame { light, settings, .. } = self.frame;
-        let [tau, depth_tolerance] = settings.tolerances_of(method);
+    /// The exact method: as parts.wesl cuts and caster.wesl draws.
+    fn exact(&mut self, triangles: Range<u32>) {
+        let light = self.frame.light;
         let bit = if self.map == DPSM_FRONT { DPSM_IN_FRONT } else { DPSM_IN_BACK };
-        let place = |vertex: &Vertex| dpsm_to_light(float(vertex.position), *light);
+        let place = |vertex: &Vertex| dpsm_to_light(float(vertex.position), light);
         let placed: Vec<_> = self.frame.vertices.iter().map(place).collect();
         for index in triangles {
             let corners = &self.frame.triangles[index as usize];
-            let Some([a, b, c]) = pick(&placed, *corners) else { continue };
-            let found = dpsm_classify(a, b, c, *light, tau, depth_tolerance);
-            if found.kind == DPSM_CULLED || found.hemispheres & bit == 0 {
-                continue;
-            }
-            let flipped = [a, b, c].map(|p| dpsm_flip(p, self.map));
-            let flat = [DPSM_FLAT, DPSM_STRADDLING, DPSM_STEEP].contains(&found.kind);
-            match flat && self.frame.mask(index).is_none() {
-                true if found.kind == DPSM_STEEP => self.steep(flipped, tau),
-                true => self.flat(flipped),
-                false if found.kind == DPSM_LARGE => self.parts(index, flipped, tau),
-                false => self.curved(index, flipped, tau, Some(1)),
+            let Some(corners) = pick(&placed, *corners) else { continue };
+            let z = corners[0].z + corners[1].z + corners[2].z;
+            let own = if z >= 0.0 { DPSM_FRONT } else { DPSM_BACK };
+            let [a, b, c] = corners.map(|p| dpsm_projected(dpsm_flip(p, own)));
+            let height = dpsm_triangle_plane(a.p, b.p, c.p).w;
+            let maps = dpsm_classify(a, b, c, height, own, light);
+            let flipped = corners.map(|p| dpsm_flip(p, self.map));
+            match maps & bit {
+                0 => {}
+                _ if maps == DPSM_IN_FRONT | DPSM_IN_BACK => self.parts(index, flipped),
+                _ => self.part(index, flipped, Some(1)),
             }
         }
     }
 
-    fn flat(&mut self, corners: [Vec3<f32>; 3]) {
+    /// The refined method: as refine.wesl refines and caster.wesl draws.
+    fn refined(&mut self, triangles: Range<u32>) {
         let Frame { light, settings, .. } = self.frame;
-        let clip = corners.map(|p| dpsm_caster_vertex(p, *light, NO_BIAS).clip);
-        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
-            let uv = self.disk(fragment.x, fragment.y);
-            if uv.length() <= 1.0 + light.guard {
-                self.store(fragment.x, fragment.y, fragment.depth);
-            }
-        });
-    }
-
-    /// A flat triangle with the distance of its plane at each texel.
-    fn steep(&mut self, corners: [Vec3<f32>; 3], tau: f32) {
-        let Frame { light, settings, .. } = self.frame;
-        let [a, b, c] = corners;
-        let prepared = dpsm_triangle(a, b, c, *light, tau);
-        let clip = corners.map(|p| dpsm_caster_vertex(p, *light, NO_BIAS).clip);
-        triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
-            let uv = self.disk(fragment.x, fragment.y);
-            let l = dpsm_triangle_distance(prepared, uv);
-            let depth = dpsm_depth(l, light.near, light.far);
-            self.store(fragment.x, fragment.y, dpsm_depth_stored(depth, light.reversed));
-        });
+        for leaf in leaves(self.frame, self.map, triangles) {
+            let clip = leaf.corners.map(|corner| {
+                let clip = dpsm_refine_clip(corner.uv, corner.distance, *light);
+                match leaf.face {
+                    Some(_) => Vec4::new(clip.x, clip.y, 0.5, 1.0),
+                    None => clip,
+                }
+            });
+            let corners = self.frame.triangles[leaf.triangle as usize];
+            let masked = self.frame.mask(leaf.triangle).is_some();
+            triangle(clip, [settings.size; 2], 1.0, &mut |fragment| {
+                let uv = self.disk(fragment.x, fragment.y);
+                let Some(face) = leaf.face else {
+                    return self.store(fragment.x, fragment.y, fragment.depth);
+                };
+                let l = dpsm_triangle_distance(face, uv);
+                let weights = || {
+                    let place = |index: u32| {
+                        let vertex = &self.frame.vertices[index as usize];
+                        dpsm_flip(dpsm_to_light(float(vertex.position), *light), self.map)
+                    };
+                    let [a, b, c] = corners.map(place);
+                    let weights = dpsm_triangle_weights(a, b, c, uv);
+                    [weights.x, weights.y, weights.z].map(f64::from)
+                };
+                if l >= light.near && (!masked || self.frame.opaque(leaf.triangle, weights())) {
+                    let depth = dpsm_depth(l, light.near, light.far);
+                    self.store(fragment.x, fragment.y, dpsm_depth_stored(depth, light.reversed));
+                }
+            });
+        }
     }
 
     /// The parts of a large triangle.
-    fn parts(&mut self, index: u32, corners: [Vec3<f32>; 3], tau: f32) {
+    fn parts(&mut self, index: u32, corners: [Vec3<f32>; 3]) {
         let [a, b, c] = corners;
         let mut path = 1;
         loop {
-            let part = dpsm_classify_part(a, b, c, path);
-            let kind = dpsm_classify_kind(part, self.frame.light);
-            if kind == DPSM_LARGE {
+            let part = dpsm_part(a, b, c, path);
+            let kind = dpsm_part_kind(part, self.frame.light);
+            if kind == DPSM_PART_LARGE {
                 if path >= DEEPEST {
-                    return self.curved(index, corners, tau, None);
+                    return self.part(index, corners, None);
                 }
                 path *= 2;
                 continue;
             }
-            if kind == DPSM_CURVED {
-                self.curved(index, corners, tau, Some(path));
+            if kind == DPSM_PART_DRAWN {
+                self.part(index, corners, Some(path));
             }
             path = (path + 1) >> (path + 1).trailing_zeros();
             if path == 1 {
@@ -210,15 +220,15 @@ impl Target<'_> {
         }
     }
 
-    /// A part of a curved triangle, or for `None` all of it by every texel.
-    fn curved(&mut self, index: u32, corners: [Vec3<f32>; 3], tau: f32, path: Option<u32>) {
+    /// A part of a triangle, or for `None` all of it by every texel.
+    fn part(&mut self, index: u32, corners: [Vec3<f32>; 3], path: Option<u32>) {
         let Frame { light, settings, .. } = self.frame;
         let [a, b, c] = corners;
-        let mut prepared = dpsm_triangle(a, b, c, *light, tau);
+        let mut prepared = dpsm_triangle(a, b, c, *light);
         let rim = 1.0 + light.guard;
         let hull = match path {
             Some(path) => {
-                let part = dpsm_classify_part(a, b, c, path);
+                let part = dpsm_part(a, b, c, path);
                 prepared.span = dpsm_triangle_span(part.a, part.b, part.c, *light);
                 let hull = dpsm_triangle_hull(part.a, part.b, part.c, *light);
                 [hull.a, hull.b, hull.c]

@@ -4,11 +4,13 @@ mod camera;
 pub mod cube;
 mod maps;
 mod raster;
+mod refined;
 mod surface;
 mod views;
 
 pub use camera::{SurfacePoint, lit_by, surface_points};
 pub use raster::{Fragment, triangle};
+pub use refined::{Leaf, leaves};
 pub use views::views;
 
 use std::time::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! Lists of triangles that a compute pass sorts: by class for the hybrid and exact methods, by face
-//! for the cube.
+//! Lists of triangles that compute passes make: refined ones, parts for the exact method, and for
+//! the cube what each face sees.
 
 use wgpu::BufferUsages as Usage;
 
@@ -8,13 +8,18 @@ use super::passes::{bind, shader, storage, uniform_entry};
 use super::timer::{Ends, Stamps, compute_writes};
 use super::{Device, GpuError, storage_bytes};
 
-/// Indirect draws of the sorted classes, each list's front before its back.
+/// Indirect draws of the refined lists, each map's front before its back.
 pub const FLAT: u64 = 0;
-pub const STRADDLING: u64 = 2;
-pub const CURVED: u64 = 3;
-pub const MASKED: u64 = 5;
-pub const STEEP: u64 = 7;
-const DRAWS: u64 = 9;
+pub const PLANE: u64 = 2;
+pub const MASKED: u64 = 4;
+pub const WHOLE: u64 = 6;
+
+/// Indirect draws of the exact lists.
+pub const PARTS: u64 = 0;
+pub const MASKED_PARTS: u64 = 2;
+
+/// Draws, and behind them how many workgroups the exact lists' second kernel takes.
+const DRAWS: u64 = 8;
 
 /// Bytes of one draw's arguments, the unused ones included.
 pub const DRAW_BYTES: u64 = 32;
@@ -23,78 +28,210 @@ pub const DRAW_BYTES: u64 = 32;
 /// triangles are drawn by hulls around the whole map.
 const EXTRA: u64 = 1 << 17;
 
-/// Bytes of a listed triangle's indices, of a part's entry, and of what is prepared of it
-/// (seven vec4).
+/// Room for what refinement makes beyond the mesh's own, where nothing has counted it.
+const REFINED: u64 = 1 << 18;
+
+/// Bytes of a listed triangle's indices, of a part's entry, and of what is prepared of it (seven
+/// vec4); of a refined vertex, a triangle to be split, and one drawn with its plane.
 const INDEX_BYTES: u64 = 12;
 const ENTRY_BYTES: u64 = 8;
-const RECORD_BYTES: u64 = 112;
+const PART_BYTES: u64 = 112;
+const VERTEX_BYTES: u64 = 32;
+const QUEUE_BYTES: u64 = 16;
+const RECORD_BYTES: u64 = 84;
 
-/// Bytes of a steep triangle's plane and number.
-const PLANE_BYTES: u64 = 32;
+/// Words of the counts in refine.wesl; those in the other kernels are fewer.
+const COUNTS: u64 = 40;
 
-/// Words of the counts in classify.wesl; those in faces.wesl are fewer.
-const COUNTS: u64 = 13;
-
-/// Triangles of a workgroup in classify.wesl and faces.wesl.
+/// Invocations of a workgroup in the kernels.
 const GROUP: u32 = 64;
 
-/// Most triangles that are sorted at once: 2^21 / 64 workgroups are half of WebGPU's limit.
+/// Most workgroups in one direction.
+const GROUPS: u32 = 65535;
+
+/// Most triangles that are listed at once: 2^21 / 64 workgroups are half of WebGPU's limit.
 const LARGEST_CHUNK: u64 = 1 << 21;
 
-/// What sorts and by what.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What makes lists and of what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum By {
-    Class,
+    /// Refined triangles.
+    Refinement,
+    /// Parts of exact ones.
+    Part,
+    /// What each face of a cube sees.
     Face,
+}
+
+/// What lists have room for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Room {
+    /// Triangles; of refined ones those that are drawn as depth alone, in both maps.
+    pub triangles: u32,
+    /// In each map parts beyond one a triangle, or refined triangles drawn with their planes.
+    pub extra: u32,
+    /// Refined: vertices, those of the mesh included.
+    pub vertices: u32,
+    /// Refined: triangles that are split at once.
+    pub queue: u32,
+}
+
+impl Room {
+    /// For chunks of so many triangles and vertices.
+    pub fn of(device: &Device, by: Option<By>, triangles: u32, vertices: u32) -> Self {
+        match by {
+            Some(By::Refinement) => {
+                let more = Self::refined(device);
+                let with = |count: u32| count.saturating_add(more);
+                Self {
+                    triangles: with(triangles.saturating_mul(2)),
+                    extra: with(triangles / 2),
+                    vertices: with(vertices),
+                    queue: with(triangles / 2),
+                }
+            }
+            Some(By::Part) => Self { triangles, extra: Self::extra(device), ..Self::default() },
+            Some(By::Face) => Self { triangles, ..Self::default() },
+            None => Self::default(),
+        }
+    }
+
+    /// No more than so much beyond the triangles and vertices themselves.
+    pub fn at_most(self, triangles: u32, vertices: u32, more: u32) -> Self {
+        let with = |count: u32| count.saturating_add(more);
+        Self {
+            triangles: self.triangles.min(with(triangles.saturating_mul(2))),
+            extra: self.extra.min(more),
+            vertices: self.vertices.min(with(vertices)),
+            queue: self.queue.min(more),
+        }
+    }
+
+    /// The larger of each.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            triangles: self.triangles.max(other.triangles),
+            extra: self.extra.max(other.extra),
+            vertices: self.vertices.max(other.vertices),
+            queue: self.queue.max(other.queue),
+        }
+    }
+
+    /// Twice as much of what refinement fills, where the adapter can bind more.
+    pub fn doubled(self, device: &Device) -> Option<Self> {
+        let limit = storage_bytes(&device.device.limits());
+        let twice = |count: u32, bytes: u64| {
+            (2 * u64::from(count)).min(limit / bytes).max(count.into()) as u32
+        };
+        let larger = Self {
+            triangles: twice(self.triangles, INDEX_BYTES),
+            extra: twice(self.extra, 2 * RECORD_BYTES),
+            vertices: twice(self.vertices, VERTEX_BYTES),
+            // dispatched at once
+            queue: twice(self.queue, 2 * QUEUE_BYTES).min(GROUPS * GROUP),
+        };
+        (larger != self).then_some(larger)
+    }
+
+    /// Room for parts beyond one a triangle, in each map: at most half of what can be bound.
+    fn extra(device: &Device) -> u32 {
+        (storage_bytes(&device.device.limits()) / (4 * PART_BYTES)).min(EXTRA) as u32
+    }
+
+    /// Room beyond the mesh's own, at most an eighth of what can be bound.
+    fn refined(device: &Device) -> u32 {
+        (storage_bytes(&device.device.limits()) / (8 * RECORD_BYTES)).min(REFINED) as u32
+    }
+
+    /// Triangles in a chunk, by the adapter's limit on what a shader may bind.
+    pub fn chunk(device: &Device, by: By, triangles: u32) -> u32 {
+        let limit = storage_bytes(&device.device.limits());
+        let fits = match by {
+            By::Refinement => {
+                (limit / RECORD_BYTES).saturating_sub((2 * Self::refined(device)).into())
+            }
+            By::Part | By::Face => {
+                (limit / (2 * PART_BYTES)).saturating_sub(Self::extra(device).into())
+            }
+        };
+        triangles.clamp(1, fits.clamp(1, LARGEST_CHUNK) as u32)
+    }
 }
 
 /// Lists with room for a chunk of triangles.
 #[derive(Debug)]
 pub struct Lists {
+    pub room: Room,
     pub indices: wgpu::Buffer,
     pub entries: wgpu::Buffer,
     pub records: wgpu::Buffer,
-    pub planes: wgpu::Buffer,
+    pub vertices: wgpu::Buffer,
     pub draws: wgpu::Buffer,
     dispatch: wgpu::Buffer,
     counts: wgpu::Buffer,
 }
 
 impl Lists {
-    /// Triangles in a chunk, by the adapter's limit on what a shader may bind.
-    pub fn chunk(device: &Device, triangles: u32) -> u32 {
-        let limit = storage_bytes(&device.device.limits());
-        let fits = (limit / (2 * RECORD_BYTES)).saturating_sub(Self::extra(device).into());
-        triangles.clamp(1, fits.clamp(1, LARGEST_CHUNK) as u32)
-    }
-
-    /// Room for parts beyond one a triangle, in each map: at most half of what can be bound.
-    pub fn extra(device: &Device) -> u32 {
-        let limit = storage_bytes(&device.device.limits());
-        (limit / (4 * RECORD_BYTES)).min(EXTRA) as u32
-    }
-
-    /// Lists for chunks of `capacity` triangles; with none of them sorted, as small as can be
-    /// bound.
-    pub fn new(device: &Device, by: Option<By>, capacity: u32) -> Result<Self, GpuError> {
-        let (capacity, extra) = (u64::from(capacity), u64::from(Self::extra(device)));
-        let (indices, parts) = match by {
-            Some(By::Class) => (capacity, capacity + extra),
-            Some(By::Face) => (6 * capacity, 0),
-            None => (0, 0),
+    /// Lists with that room; for `None` as small as can be bound.
+    pub fn new(device: &Device, by: Option<By>, room: Room) -> Result<Self, GpuError> {
+        let Room { triangles, extra, vertices, queue } = room;
+        let [triangles, extra, vertices, queue] =
+            [triangles, extra, vertices, queue].map(u64::from);
+        let [indices, entries, records] = match by {
+            Some(By::Refinement) => [triangles, 2 * queue * QUEUE_BYTES, 2 * extra * RECORD_BYTES],
+            Some(By::Part) => {
+                let parts = 2 * (triangles + extra);
+                [0, parts * ENTRY_BYTES, parts * PART_BYTES]
+            }
+            Some(By::Face) => [6 * triangles, 0, 0],
+            None => [0, 0, 0],
         };
         let list = |label, bytes, usage| device.buffer(label, bytes, usage | Usage::STORAGE);
-        let entries = (capacity * 4).min(parts * 4) + 2 * parts * ENTRY_BYTES;
         let draws = Usage::INDIRECT | Usage::COPY_SRC;
+        let dispatch = Usage::INDIRECT | Usage::COPY_DST;
         Ok(Self {
+            room,
             indices: list("list index bytes", indices * INDEX_BYTES, Usage::INDEX)?,
-            entries: list("part list bytes", entries, Usage::empty())?,
-            records: list("record bytes", 2 * parts * RECORD_BYTES, Usage::empty())?,
-            planes: list("plane bytes", capacity.min(parts) * PLANE_BYTES, Usage::empty())?,
+            entries: list("list entry bytes", entries, Usage::empty())?,
+            records: list("record bytes", records, Usage::VERTEX)?,
+            vertices: list("list vertex bytes", vertices * VERTEX_BYTES, Usage::VERTEX)?,
             draws: list("draw bytes", (DRAWS + 1) * DRAW_BYTES, draws)?,
-            dispatch: device.buffer("dispatch bytes", 12, Usage::INDIRECT | Usage::COPY_DST)?,
-            counts: list("count bytes", COUNTS * 4, Usage::COPY_DST)?,
+            dispatch: list("dispatch bytes", 12, dispatch)?,
+            counts: list("count bytes", COUNTS * 4, Usage::COPY_DST | Usage::COPY_SRC)?,
         })
+    }
+
+    /// Bytes that they take.
+    pub fn bytes(&self) -> u64 {
+        let Self { indices, entries, records, vertices, .. } = self;
+        [indices, entries, records, vertices].iter().map(|buffer| buffer.size()).sum()
+    }
+
+    /// What the last refinement needed, and whether that was more than there is room for; of one
+    /// that ran out of room it may need more still.
+    pub fn needed(&self, device: &Device, vertices: u32) -> Result<(Room, bool), GpuError> {
+        let bytes = COUNTS * 4;
+        let copy = device.buffer("count bytes", bytes, Usage::MAP_READ | Usage::COPY_DST)?;
+        let encoder = device.encode("counts", |encoder| {
+            encoder.copy_buffer_to_buffer(&self.counts, 0, &copy, 0, bytes);
+        })?;
+        device.submit("counts", encoder)?;
+        let words = device.read(&copy, bytes)?;
+        let words: &[u32] = bytemuck::cast_slice(&words);
+        let [flat_front, flat_back, front, back, masked_front, masked_back, split, _] =
+            std::array::from_fn(|k| words.get(k).copied().unwrap_or(0));
+        let queues = words.get(8..).unwrap_or_default();
+        let room = Room {
+            triangles: flat_front.saturating_add(flat_back),
+            extra: (front.saturating_add(masked_front)).max(back.saturating_add(masked_back)),
+            vertices: vertices.saturating_add(split),
+            queue: queues.iter().copied().max().unwrap_or(0),
+        };
+        let is_over = room.triangles > self.room.triangles
+            || room.extra > self.room.extra
+            || room.vertices > self.room.vertices
+            || room.queue > self.room.queue;
+        Ok((room, is_over))
     }
 }
 
@@ -104,19 +241,47 @@ pub struct Sorter {
     by: By,
     pipelines: Vec<wgpu::ComputePipeline>,
     layout: wgpu::BindGroupLayout,
+    /// Of the kernel that says how many workgroups the next one takes.
+    dispatch: wgpu::BindGroupLayout,
+}
+
+/// What a sorter binds.
+#[derive(Debug)]
+pub struct Bound {
+    lists: wgpu::BindGroup,
+    dispatch: wgpu::BindGroup,
+}
+
+/// What a sorter sorts: how many vertices and triangles, and into how many levels.
+#[derive(Clone, Copy, Debug)]
+pub struct Work {
+    /// Where the pass's uniforms are.
+    pub offset: u32,
+    pub vertices: u32,
+    pub triangles: u32,
+    pub levels: u32,
 }
 
 impl Sorter {
     pub fn new(device: &Device, by: By) -> Result<Self, GpuError> {
         let (path, text, entries): (_, _, &[&str]) = match by {
-            By::Class => (
-                "classify.wesl",
+            By::Refinement => (
+                "refine.wesl",
                 concat!(
-                    include_str!("classify.wesl"),
+                    include_str!("refine.wesl"),
                     include_str!("pass.wesl"),
                     include_str!("position.wesl")
                 ),
-                &["classify", "count", "prepare", "finish"],
+                &["place", "roots", "prepare", "level", "finish"],
+            ),
+            By::Part => (
+                "parts.wesl",
+                concat!(
+                    include_str!("parts.wesl"),
+                    include_str!("pass.wesl"),
+                    include_str!("position.wesl")
+                ),
+                &["sort", "count", "prepare", "finish"],
             ),
             By::Face => (
                 "faces.wesl",
@@ -130,7 +295,8 @@ impl Sorter {
         };
         let module = shader(device, path, text)?;
         let writable = match by {
-            By::Class => 3..9,
+            By::Refinement => 3..9,
+            By::Part => 3..7,
             By::Face => 3..6,
         };
         device.step("the sorting pipelines", || {
@@ -138,17 +304,24 @@ impl Sorter {
             let mut bindings = vec![uniform_entry(compute)];
             bindings.extend((1..3).map(|i| storage(i, true, compute)));
             bindings.extend(writable.map(|i| storage(i, false, compute)));
-            let layout = device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("sorting"),
-                entries: &bindings,
-            });
-            let pipeline_layout =
-                device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            let group = |entries: &[wgpu::BindGroupLayoutEntry]| {
+                device.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                     label: Some("sorting"),
-                    bind_group_layouts: &[Some(&layout)],
-                    immediate_size: 0,
-                });
+                    entries,
+                })
+            };
+            let layout = group(&bindings);
+            let dispatch = group(&[storage(0, false, compute)]);
             let pipeline = |&entry: &&str| {
+                let groups = [Some(&layout), Some(&dispatch)];
+                // the dispatch's own arguments may be bound only where nothing is dispatched by them
+                let count = if by.tells(entry) { 2 } else { 1 };
+                let pipeline_layout =
+                    device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                        label: Some("sorting"),
+                        bind_group_layouts: &groups[..count],
+                        immediate_size: 0,
+                    });
                 device.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(entry),
                     layout: Some(&pipeline_layout),
@@ -158,7 +331,7 @@ impl Sorter {
                     cache: None,
                 })
             };
-            Self { by, pipelines: entries.iter().map(pipeline).collect(), layout }
+            Self { by, pipelines: entries.iter().map(pipeline).collect(), layout, dispatch }
         })
     }
 
@@ -169,64 +342,90 @@ impl Sorter {
         uniforms: wgpu::BindingResource<'_>,
         mesh: &MeshBuffers,
         lists: &Lists,
-    ) -> wgpu::BindGroup {
+    ) -> Bound {
         let positions = mesh.positions.as_entire_binding();
-        let indices = mesh.indices.as_entire_binding();
-        let [counts, flats, entries, draws, records, planes] = [
+        let triangles = mesh.indices.as_entire_binding();
+        let [counts, indices, entries, draws, records, vertices] = [
             &lists.counts,
             &lists.indices,
             &lists.entries,
             &lists.draws,
             &lists.records,
-            &lists.planes,
+            &lists.vertices,
         ]
         .map(|buffer| buffer.as_entire_binding());
-        let mut resources = vec![uniforms, positions, indices, counts, flats];
+        let mut resources = vec![uniforms, positions, triangles, counts];
         match self.by {
-            By::Class => resources.extend([entries, draws, records, planes]),
-            By::Face => resources.push(draws),
+            By::Refinement => resources.extend([vertices, entries, indices, records, draws]),
+            By::Part => resources.extend([entries, draws, records]),
+            By::Face => resources.extend([indices, draws]),
         }
-        bind(device, &self.layout, resources)
+        let dispatch = bind(device, &self.dispatch, vec![lists.dispatch.as_entire_binding()]);
+        Bound { lists: bind(device, &self.layout, resources), dispatch }
     }
 
-    /// Records the sorting of so many triangles.
+    /// Records the making of the lists.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
-        (group, offset): (&wgpu::BindGroup, u32),
-        triangles: u32,
+        group: &Bound,
+        work: Work,
         lists: &Lists,
         stamps: Stamps<'_>,
         ends: Ends,
     ) {
         encoder.clear_buffer(&lists.counts, 0, None);
-        let begin = |encoder: &mut wgpu::CommandEncoder, ends| {
-            let mut pass = encoder
-                .begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some("sorting"),
-                    timestamp_writes: compute_writes(stamps, ends),
-                })
-                .forget_lifetime();
-            pass.set_bind_group(0, group, &[offset]);
-            pass
+        let mut pass = encoder
+            .begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("sorting"),
+                timestamp_writes: compute_writes(stamps, ends),
+            })
+            .forget_lifetime();
+        pass.set_bind_group(0, &group.lists, &[work.offset]);
+        let one = |pass: &mut wgpu::ComputePass<'_>, pipeline: usize, groups: u32| {
+            pass.set_pipeline(&self.pipelines[pipeline]);
+            // two directions where one has not enough
+            let rows = groups.div_ceil(GROUPS).max(1);
+            pass.dispatch_workgroups(groups.div_ceil(rows), rows, 1);
         };
-        let one = |pass: &mut wgpu::ComputePass<'_>, pipeline: &wgpu::ComputePipeline, groups| {
-            pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(groups, 1, 1);
+        // a kernel that says how many workgroups the next one takes
+        let told = |pass: &mut wgpu::ComputePass<'_>, pipeline: usize| {
+            pass.set_pipeline(&self.pipelines[pipeline]);
+            pass.set_bind_group(1, &group.dispatch, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+            pass.set_pipeline(&self.pipelines[pipeline + 1]);
+            pass.dispatch_workgroups_indirect(&lists.dispatch, 0);
         };
-        let alone = self.by == By::Face;
-        let mut pass = begin(encoder, Ends { last: ends.last && alone, ..ends });
-        one(&mut pass, &self.pipelines[0], triangles.div_ceil(GROUP));
-        one(&mut pass, &self.pipelines[1], 1);
-        drop(pass);
-        if alone {
-            return;
+        let groups = work.triangles.div_ceil(GROUP);
+        match self.by {
+            By::Refinement => {
+                one(&mut pass, 0, work.vertices.div_ceil(GROUP));
+                one(&mut pass, 1, groups);
+                for _ in 0..work.levels {
+                    told(&mut pass, 2);
+                }
+                one(&mut pass, 4, 1);
+            }
+            By::Part => {
+                one(&mut pass, 0, groups);
+                told(&mut pass, 1);
+                one(&mut pass, 3, 1);
+            }
+            By::Face => {
+                one(&mut pass, 0, groups);
+                one(&mut pass, 1, 1);
+            }
         }
-        let dispatch = DRAWS * DRAW_BYTES;
-        encoder.copy_buffer_to_buffer(&lists.draws, dispatch, &lists.dispatch, 0, 12);
-        let mut pass = begin(encoder, Ends { first: false, ..ends });
-        pass.set_pipeline(&self.pipelines[2]);
-        pass.dispatch_workgroups_indirect(&lists.dispatch, 0);
-        one(&mut pass, &self.pipelines[3], 1);
+    }
+}
+
+impl By {
+    /// Whether a kernel says how many workgroups the next one takes.
+    fn tells(self, entry: &str) -> bool {
+        match self {
+            By::Refinement => entry == "prepare",
+            By::Part => entry == "count",
+            By::Face => false,
+        }
     }
 }

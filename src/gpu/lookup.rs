@@ -47,7 +47,7 @@ pub fn camera_uniform(
     let mut words: Vec<u32> = rows.into_iter().flat_map(row).collect();
     words.extend(light_words(light));
     let settings = &frame.settings;
-    let [_, tolerance] = settings.tolerances();
+    let tolerance = settings.too_near();
     let quantum = settings.quantum();
     let biases = [frame.bias, quantum, tolerance, settings.window()];
     words.extend(biases.map(f32::to_bits));

@@ -8,15 +8,16 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Range;
 
-use super::lists::{By, Lists, Sorter};
+use super::lists::{Bound, By, Lists, Room, Sorter, Work};
 use super::mesh::MeshBuffers;
 use super::multiview::{try_views, views};
 use super::passes::{
     MapPass, PASS_BYTES, bind, depth_texture, layers_view, map_bindings, pipelines,
 };
 use super::texels::Texels;
+use super::timer::Ends;
 use super::{Device, GpuError};
-use crate::render::{Extent, Format, Frame, Method, Passes, Settings};
+use crate::render::{Extent, Format, Frame, Method, Passes, Settings, refinement_levels};
 use crate::scalar::light::{DPSM_ATLAS, DPSM_LAYERS, DPSM_REVERSED, DpsmLight};
 use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scalar::paraboloid::dpsm_texel_width;
@@ -39,9 +40,13 @@ pub struct ShadowMaps {
     /// Chunks that are drawn in the same passes.
     batches: Vec<Range<usize>>,
     uniforms: Vec<MapPass>,
-    sorter: Option<Sorter>,
-    /// One for each light and batch where they are kept, else one.
+    sorters: BTreeMap<By, Sorter>,
+    /// One for each light and batch where they are kept, else one for each way of making lists.
     sets: Vec<Set>,
+    /// Of each light and batch, the number of its set.
+    places: Vec<usize>,
+    /// Whether refinement needs more room than there is.
+    overfull: bool,
     /// By the number of views in a pass, and by method.
     pipelines: BTreeMap<(u32, Method), Vec<wgpu::RenderPipeline>>,
 }
@@ -51,15 +56,17 @@ pub struct ShadowMaps {
 struct Chunk {
     triangles: Range<u32>,
     method: Method,
-    /// They are sorted into lists first.
-    is_sorted: bool,
+    /// How lists are made of them first, if any are.
+    by: Option<By>,
+    /// The vertices that they use, where that matters.
+    vertices: Range<u32>,
 }
 
 /// Lists and what binds them.
 #[derive(Debug)]
 struct Set {
     lists: Lists,
-    sorting: Option<wgpu::BindGroup>,
+    sorting: Option<Bound>,
     drawing: wgpu::BindGroup,
 }
 
@@ -110,32 +117,14 @@ impl ShadowMaps {
         let size = settings.map_size();
         let texture =
             depth_texture(device, [size * side, size], layers, settings.format.texture())?;
-        let drawn = frame.drawn();
-        let by = drawn.iter().find_map(|(_, method)| sorted_by(*method, settings));
-        let capacity = capacity(device, settings, &drawn);
-        let chunks = chunks(settings, drawn, capacity);
+        let chunks = chunks(device, frame);
         let batches = batches(&chunks);
-        let room = [capacity, Lists::extra(device)];
-        let uniforms = uniforms(frame, mesh, &lights, &chunks, room);
         let tessellated = frame.tessellated();
         let levels = |light| {
             let levels = frame.levels(&tessellated, light)?;
             Ok(tessellated.iter().cloned().zip(levels).collect())
         };
         let levels = lights.iter().map(levels).collect::<Result<_, GpuError>>()?;
-        // with nothing to draw, as large as can be bound
-        let mut bytes = vec![0u8; uniforms.len().max(1) * PASS_BYTES];
-        for (pass, bytes) in uniforms.iter().zip(bytes.chunks_mut(PASS_BYTES)) {
-            bytes[..size_of::<MapPass>()].copy_from_slice(bytemuck::bytes_of(pass));
-        }
-        let buffer = device.upload("map uniform bytes", &bytes, wgpu::BufferUsages::UNIFORM)?;
-        let uniform = || {
-            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer,
-                offset: 0,
-                size: wgpu::BufferSize::new(size_of::<MapPass>() as u64),
-            })
-        };
         let layout = map_bindings(device)?;
         let mut by_views = BTreeMap::new();
         for &views in &views {
@@ -145,30 +134,23 @@ impl ShadowMaps {
                 }
             }
         }
-        let sorter = by.map(|by| Sorter::new(device, by)).transpose()?;
-        let kept =
-            if settings.keep_lists && by.is_some() { lights.len() * batches.len() } else { 1 };
-        let set = |_| {
-            let lists = Lists::new(device, by, capacity)?;
-            let [positions, indices, entries, records, surfaces, masks, planes] = [
-                &mesh.positions,
-                &mesh.indices,
-                &lists.entries,
-                &lists.records,
-                &mesh.surfaces,
-                &mesh.masks,
-                &lists.planes,
-            ]
-            .map(|buffer| buffer.as_entire_binding());
-            let (sorting, drawing) = device.step("the map bindings", || {
-                let resources =
-                    vec![uniform(), positions, indices, entries, records, surfaces, masks, planes];
-                let group = |sorter: &Sorter| sorter.group(device, uniform(), mesh, &lists);
-                (sorter.as_ref().map(group), bind(device, &layout, resources))
-            })?;
-            Ok(Set { lists, sorting, drawing })
+        let mut sorters = BTreeMap::new();
+        for by in chunks.iter().filter_map(|chunk| chunk.by) {
+            if let Entry::Vacant(vacant) = sorters.entry(by) {
+                vacant.insert(Sorter::new(device, by)?);
+            }
+        }
+        let host = Host { device, frame, mesh, lights: &lights, chunks: &chunks };
+        let planned = plan_sets(&host, &batches, &sorters)?;
+        let uniforms = host.uniforms(|light, chunk| {
+            let batch = batches.iter().position(|batch| batch.contains(&chunk)).unwrap_or(0);
+            planned.rooms[planned.places[light * batches.len() + batch]]
+        });
+        let buffer = upload(device, &uniforms)?;
+        let set = |(&by, &room): (&Option<By>, &Room)| {
+            host.set(by, Lists::new(device, by, room)?, &buffer, &layout, &sorters)
         };
-        let sets = (0..kept).map(set).collect::<Result<_, GpuError>>()?;
+        let sets = planned.kinds.iter().zip(&planned.rooms).map(set).collect::<Result<_, _>>()?;
         let mut targets = Vec::new();
         for (light, &views) in lights.iter().zip(&views) {
             let own = light.first_layer..light.first_layer + layers_of(light);
@@ -189,10 +171,23 @@ impl ShadowMaps {
             chunks,
             batches,
             uniforms,
-            sorter,
+            sorters,
             sets,
+            places: planned.places,
+            overfull: planned.overfull,
             pipelines: by_views,
         })
+    }
+
+    /// True where refinement needs more room than the settings or the adapter give it: the maps are
+    /// right all the same, but drawn by the slowest way there is.
+    pub fn is_overfull(&self) -> bool {
+        self.overfull
+    }
+
+    /// Bytes of all lists.
+    pub fn list_bytes(&self) -> u64 {
+        self.sets.iter().map(|set| set.lists.bytes()).sum()
     }
 
     /// Number of maps of the first light.
@@ -202,7 +197,7 @@ impl ShadowMaps {
 
     /// Render passes that one recording begins: for each light one a map, or one in all where its
     /// maps share one; that many again for each list of triangles beyond the first, where there are
-    /// more than fit at once or where some are drawn `Exact` and some `Hybrid`.
+    /// more than fit at once or where some are drawn `Exact` and some `Refined`.
     pub fn passes(&self) -> usize {
         self.targets.len() * self.batches.len()
     }
@@ -254,84 +249,256 @@ fn placed(lights: &[DpsmLight<f32>], passes: Passes) -> (Vec<DpsmLight<f32>>, u3
     (lights.iter().map(place).collect(), side)
 }
 
-/// What a method sorts its triangles by.
-fn sorted_by(method: Method, settings: &Settings) -> Option<By> {
+/// How lists are made of a method's triangles.
+fn listed_by(method: Method, settings: &Settings) -> Option<By> {
     match method {
-        Method::Exact | Method::Hybrid => Some(By::Class),
+        Method::Refined => Some(By::Refinement),
+        Method::Exact => Some(By::Part),
         Method::Cube if settings.cull_faces => Some(By::Face),
         _ => None,
     }
 }
 
-/// Triangles that lists have room for.
-fn capacity(device: &Device, settings: &Settings, drawn: &[(Range<u32>, Method)]) -> u32 {
-    let sorted = drawn.iter().filter(|(_, method)| sorted_by(*method, settings).is_some());
-    let longest = sorted.map(|(triangles, _)| triangles.len() as u32).max();
-    Lists::chunk(device, longest.unwrap_or(0))
-}
-
-/// Ranges of triangles as they are drawn: those that are sorted in as many as lists need.
-fn chunks(settings: &Settings, drawn: Vec<(Range<u32>, Method)>, capacity: u32) -> Vec<Chunk> {
+/// Ranges of triangles as they are drawn: those of lists in as many as lists need.
+fn chunks(device: &Device, frame: &Frame) -> Vec<Chunk> {
     let mut chunks = Vec::new();
-    for (Range { start, end }, method) in drawn {
-        let is_sorted = sorted_by(method, settings).is_some();
-        let step = if is_sorted { capacity } else { end - start };
+    for (Range { start, end }, method) in frame.drawn() {
+        let by = listed_by(method, &frame.settings);
+        let step = by.map_or(end - start, |by| Room::chunk(device, by, end - start));
         let chunk = |first: u32| {
             let triangles = first..first.saturating_add(step).min(end);
-            Chunk { triangles, method, is_sorted }
+            let vertices = match by {
+                Some(By::Refinement) => used(frame, &triangles),
+                _ => 0..0,
+            };
+            Chunk { triangles, method, by, vertices }
         };
         chunks.extend((start..end).step_by(step as usize).map(chunk));
     }
     chunks
 }
 
-/// Chunks for one pass a map: consecutive ones, of which one may be sorted, as lists hold one. At
+/// The vertices that triangles use: from the first to the last, at least one.
+fn used(frame: &Frame, triangles: &Range<u32>) -> Range<u32> {
+    let corners = frame.triangles[triangles.start as usize..triangles.end as usize].as_flattened();
+    let last = (frame.vertices.len() as u32).saturating_sub(1);
+    let first = corners.iter().min().map_or(0, |&first| first.min(last));
+    first..corners.iter().max().map_or(0, |&high| high.min(last)) + 1
+}
+
+/// Chunks for one pass a map: consecutive ones, of which one may have lists, as a set holds one. At
 /// least one batch, as passes without draws clear the maps.
 fn batches(chunks: &[Chunk]) -> Vec<Range<usize>> {
     let mut batches = Vec::new();
     let (mut start, mut has_lists) = (0, false);
     for (index, chunk) in chunks.iter().enumerate() {
-        if chunk.is_sorted && has_lists {
+        if chunk.by.is_some() && has_lists {
             batches.push(start..index);
             start = index;
         }
-        has_lists |= chunk.is_sorted;
+        has_lists |= chunk.by.is_some();
     }
     batches.push(start..chunks.len());
     batches
 }
 
-/// The uniforms of each light, chunk and map, in this order.
-fn uniforms(
-    frame: &Frame,
-    mesh: &MeshBuffers,
-    lights: &[DpsmLight<f32>],
-    chunks: &[Chunk],
-    [capacity, extra]: [u32; 2],
-) -> Vec<MapPass> {
-    let pass = |light: DpsmLight<f32>, chunk: &Chunk, hemisphere: u32| {
-        let [tau, depth_tolerance] = frame.settings.tolerances_of(chunk.method);
+/// What sets there are.
+struct Planned {
+    kinds: Vec<Option<By>>,
+    rooms: Vec<Room>,
+    /// Of each light and batch, the number of its set.
+    places: Vec<usize>,
+    overfull: bool,
+}
+
+/// Sets for each light and batch. Refinement's are as large as it needs, which a first one says.
+fn plan_sets(
+    host: &Host<'_>,
+    batches: &[Range<usize>],
+    sorters: &BTreeMap<By, Sorter>,
+) -> Result<Planned, GpuError> {
+    let settings = &host.frame.settings;
+    let mut planned =
+        Planned { kinds: Vec::new(), rooms: Vec::new(), places: Vec::new(), overfull: false };
+    for light in 0..host.lights.len() {
+        for batch in batches {
+            let listed = batch.clone().find(|&chunk| host.chunks[chunk].by.is_some());
+            let by = listed.and_then(|chunk| host.chunks[chunk].by);
+            let room = match (listed, by) {
+                (Some(chunk), Some(By::Refinement)) => {
+                    let (room, is_over) = host.refined_room(light, chunk, sorters)?;
+                    planned.overfull |= is_over;
+                    room
+                }
+                (Some(chunk), by) => {
+                    Room::of(host.device, by, host.chunks[chunk].triangles.len() as u32, 0)
+                }
+                _ => Room::default(),
+            };
+            let shared = match settings.keep_lists && by.is_some() {
+                true => None,
+                false => planned.kinds.iter().position(|kind| *kind == by),
+            };
+            let place = shared.unwrap_or(planned.kinds.len());
+            match shared {
+                Some(place) => planned.rooms[place] = planned.rooms[place].max(room),
+                None => {
+                    planned.kinds.push(by);
+                    planned.rooms.push(room);
+                }
+            }
+            planned.places.push(place);
+        }
+    }
+    Ok(planned)
+}
+
+/// What sets of lists are made from.
+struct Host<'a> {
+    device: &'a Device,
+    frame: &'a Frame,
+    mesh: &'a MeshBuffers,
+    lights: &'a [DpsmLight<f32>],
+    chunks: &'a [Chunk],
+}
+
+impl Host<'_> {
+    /// The uniforms of each light, chunk and map, in this order.
+    fn uniforms(&self, room: impl Fn(usize, usize) -> Room) -> Vec<MapPass> {
+        let mut uniforms = Vec::new();
+        for (number, light) in self.lights.iter().enumerate() {
+            for (chunk_number, chunk) in self.chunks.iter().enumerate() {
+                let room = room(number, chunk_number);
+                let pass = |hemisphere| self.uniform(light, chunk, hemisphere, room);
+                uniforms.extend((0..light.hemispheres).map(pass));
+            }
+        }
+        uniforms
+    }
+
+    fn uniform(
+        &self,
+        light: &DpsmLight<f32>,
+        chunk: &Chunk,
+        hemisphere: u32,
+        room: Room,
+    ) -> MapPass {
+        let settings = &self.frame.settings;
+        let [tau, depth_tolerance] = settings.tolerances_of(chunk.method);
         let beside = if light.placement == DPSM_ATLAS { hemisphere as f32 } else { 0.0 };
         MapPass {
-            light,
+            light: *light,
             hemisphere,
             first: chunk.triangles.start,
             triangles: chunk.triangles.len() as u32,
-            first_masked: mesh.first_masked,
-            capacity,
-            extra,
+            first_masked: self.mesh.first_masked,
+            first_vertex: chunk.vertices.start,
+            vertices: chunk.vertices.len() as u32,
+            capacity: room.triangles,
+            extra: room.extra,
+            vertex_room: room.vertices,
+            queue_room: room.queue,
+            levels: levels(chunk, settings),
+            padding: 0,
             middle: [(beside + 0.5) * light.size, 0.5 * light.size],
             texel: dpsm_texel_width(light.size, light.guard),
             tau,
             depth_tolerance,
-            padding: 0,
-        }
-    };
-    let mut uniforms = Vec::new();
-    for light in lights {
-        for chunk in chunks {
-            uniforms.extend((0..light.hemispheres).map(|h| pass(*light, chunk, h)));
+            scale: 1.0 / (light.far - light.near),
+            rest: [0; 2],
         }
     }
-    uniforms
+
+    /// Binds lists.
+    fn set(
+        &self,
+        by: Option<By>,
+        lists: Lists,
+        uniforms: &wgpu::Buffer,
+        layout: &wgpu::BindGroupLayout,
+        sorters: &BTreeMap<By, Sorter>,
+    ) -> Result<Set, GpuError> {
+        let device = self.device;
+        let uniform = || {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: uniforms,
+                offset: 0,
+                size: wgpu::BufferSize::new(size_of::<MapPass>() as u64),
+            })
+        };
+        let mesh = self.mesh;
+        let [positions, indices, records, surfaces, masks] =
+            [&mesh.positions, &mesh.indices, &lists.records, &mesh.surfaces, &mesh.masks]
+                .map(|buffer| buffer.as_entire_binding());
+        let (sorting, drawing) = device.step("the map bindings", || {
+            let resources = vec![uniform(), positions, indices, records, surfaces, masks];
+            let sorter = by.and_then(|by| sorters.get(&by));
+            let group = |sorter: &Sorter| sorter.group(device, uniform(), mesh, &lists);
+            (sorter.map(group), bind(device, layout, resources))
+        })?;
+        Ok(Set { lists, sorting, drawing })
+    }
+
+    /// The room that refinement of a light's chunk needs, by doing it; and whether it is more than
+    /// there can be.
+    fn refined_room(
+        &self,
+        light: usize,
+        chunk: usize,
+        sorters: &BTreeMap<By, Sorter>,
+    ) -> Result<(Room, bool), GpuError> {
+        let (device, by) = (self.device, By::Refinement);
+        let Chunk { triangles, vertices, .. } = &self.chunks[chunk];
+        let [triangles, vertices] = [triangles, vertices].map(|range| range.len() as u32);
+        let Some(sorter) = sorters.get(&by) else { return Ok((Room::default(), false)) };
+        let mut room = Room::of(device, Some(by), triangles, vertices);
+        let most = self.frame.settings.most_refined;
+        if let Some(more) = most {
+            room = room.at_most(triangles, vertices, more);
+        }
+        loop {
+            let pass = self.uniform(&self.lights[light], &self.chunks[chunk], 0, room);
+            let buffer = upload(device, &[pass])?;
+            let lists = Lists::new(device, Some(by), room)?;
+            let uniform = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &buffer,
+                offset: 0,
+                size: wgpu::BufferSize::new(size_of::<MapPass>() as u64),
+            });
+            let group = device
+                .step("the map bindings", || sorter.group(device, uniform, self.mesh, &lists))?;
+            let work = Work { offset: 0, vertices, triangles, levels: pass.levels };
+            let encoder = device.encode("refinement", |encoder| {
+                let ends = Ends { first: true, last: true };
+                sorter.record(encoder, &group, work, &lists, None, ends);
+            })?;
+            device.submit("refinement", encoder)?;
+            let (needed, is_over) = lists.needed(device, vertices)?;
+            if !is_over {
+                return Ok((needed, false));
+            }
+            match (most, room.doubled(device)) {
+                (None, Some(larger)) => room = larger,
+                _ => return Ok((room, true)),
+            }
+        }
+    }
+}
+
+/// How often the edges of a chunk are split.
+fn levels(chunk: &Chunk, settings: &Settings) -> u32 {
+    match chunk.by {
+        Some(By::Refinement) => refinement_levels(settings.size, settings.tau),
+        _ => 0,
+    }
+}
+
+/// Uniforms at the offsets that passes bind them by.
+fn upload(device: &Device, uniforms: &[MapPass]) -> Result<wgpu::Buffer, GpuError> {
+    // with nothing to draw, as large as can be bound
+    let mut bytes = vec![0u8; uniforms.len().max(1) * PASS_BYTES];
+    for (pass, bytes) in uniforms.iter().zip(bytes.chunks_mut(PASS_BYTES)) {
+        bytes[..size_of::<MapPass>()].copy_from_slice(bytemuck::bytes_of(pass));
+    }
+    device.upload("map uniform bytes", &bytes, wgpu::BufferUsages::UNIFORM)
 }

@@ -17,13 +17,20 @@ pub struct MapPass {
     pub first: u32,
     pub triangles: u32,
     pub first_masked: u32,
+    pub first_vertex: u32,
+    pub vertices: u32,
     pub capacity: u32,
     pub extra: u32,
+    pub vertex_room: u32,
+    pub queue_room: u32,
+    pub levels: u32,
+    pub padding: u32,
     pub middle: [f32; 2],
     pub texel: f32,
     pub tau: f32,
     pub depth_tolerance: f32,
-    pub padding: u32,
+    pub scale: f32,
+    pub rest: [u32; 2],
 }
 
 /// Bytes from one pass's uniforms to the next, WebGPU's alignment of dynamic offsets.
@@ -34,6 +41,8 @@ pub const PASS_BYTES: usize = 256;
 enum Reads {
     Positions,
     Surfaces,
+    Refined,
+    Planar,
     Nothing,
 }
 
@@ -66,6 +75,31 @@ impl Settings {
 /// Vertex and fragment entry points.
 type Stages = (&'static str, Option<&'static str>, Reads);
 
+/// Of a refined vertex its distance, and its disk coordinates in both maps.
+const REFINED_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 32,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &[
+        wgpu::VertexAttribute {
+            format: wgpu::VertexFormat::Float32,
+            offset: 12,
+            shader_location: 5,
+        },
+        wgpu::VertexAttribute {
+            format: wgpu::VertexFormat::Float32x4,
+            offset: 16,
+            shader_location: 6,
+        },
+    ],
+};
+
+/// Of a vertex of what is drawn with its plane: disk coordinates, plane, and its triangle.
+const PLANAR_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: 28,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![5 => Float32x2, 6 => Float32x4, 7 => Uint32],
+};
+
 /// The draws of a method, one pipeline each: opaque triangles first, alpha-tested ones last.
 fn stages(method: Method) -> &'static [Stages] {
     match method {
@@ -81,12 +115,15 @@ fn stages(method: Method) -> &'static [Stages] {
             ("tessellated", Some("vertex_method_fragment"), Reads::Nothing),
             ("tessellated", Some("vertex_method_masked_fragment"), Reads::Nothing),
         ],
-        Method::Exact | Method::Hybrid => &[
-            ("flat", None, Reads::Positions),
-            ("straddling", Some("straddling_fragment"), Reads::Nothing),
-            ("steep", Some("steep_fragment"), Reads::Nothing),
-            ("curved", Some("curved_fragment"), Reads::Nothing),
-            ("masked", Some("masked_fragment"), Reads::Nothing),
+        Method::Exact => &[
+            ("exact", Some("exact_fragment"), Reads::Nothing),
+            ("exact", Some("exact_masked_fragment"), Reads::Nothing),
+        ],
+        Method::Refined => &[
+            ("refined", None, Reads::Refined),
+            ("planar", Some("planar_fragment"), Reads::Planar),
+            ("planar_masked", Some("planar_masked_fragment"), Reads::Planar),
+            ("whole", Some("exact_masked_fragment"), Reads::Nothing),
         ],
         Method::Cube => &[
             ("cube", None, Reads::Positions),
@@ -99,7 +136,7 @@ fn stages(method: Method) -> &'static [Stages] {
 pub fn map_bindings(device: &Device) -> Result<wgpu::BindGroupLayout, GpuError> {
     let visibility = wgpu::ShaderStages::VERTEX_FRAGMENT;
     let mut entries = vec![uniform_entry(visibility)];
-    entries.extend((1..8).map(|i| storage(i, true, visibility)));
+    entries.extend((1..6).map(|i| storage(i, true, visibility)));
     let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("maps"), entries: &entries };
     device.step("the map bindings", || device.device.create_bind_group_layout(&descriptor))
 }
@@ -144,6 +181,8 @@ fn pipeline(
     let buffers: &[_] = match reads {
         Reads::Positions => &[Some(POSITION_LAYOUT)],
         Reads::Surfaces => &[Some(POSITION_LAYOUT), Some(SURFACE_LAYOUT)],
+        Reads::Refined => &[Some(REFINED_LAYOUT)],
+        Reads::Planar => &[Some(PLANAR_LAYOUT)],
         Reads::Nothing => &[],
     };
     device.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {

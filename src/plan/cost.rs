@@ -48,7 +48,7 @@ impl Rates {
     };
 }
 
-/// Time of exact maps over hybrid ones', on llvmpipe (docs/plan.md).
+/// Time of exact maps over what the rates were fitted to, on llvmpipe (docs/plan.md).
 pub const EXACT: f64 = 1.06;
 
 /// A triangle as the light sees it.

@@ -102,8 +102,8 @@ pub fn explained(
         line(
             "method",
             "exact".into(),
-            "for every mesh that is kept: hybrid maps forgive gaps thinner than their tolerance of \
-             distances, and cost nearly as much"
+            "for every mesh that is kept: refined maps forgive gaps thinner than their tolerance of \
+             distances"
                 .into(),
             None,
         ),

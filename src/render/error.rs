@@ -140,11 +140,12 @@ pub enum FrameError {
         /// What it has.
         remedy: &'static str,
     },
-    /// Multiview by a method that has a list of triangles for each map.
-    #[error(
-        "the exact and hybrid methods draw a list of triangles for each map, so they have no multiview; choose --passes atlas, or --method vertex, fragment-depth or tessellated"
-    )]
-    Multiview,
+    /// Edges that are drawn too near their arcs, or too far.
+    #[error("--tau {0} must be from 0.015625 to 4 texels")]
+    Tau(f32),
+    /// A tolerance that is none.
+    #[error("a depth tolerance of {0} must be a number from 0 to 1")]
+    DepthTolerance(f32),
     /// A filter that cannot be.
     #[error("the filter has {0}")]
     Filter(String),

@@ -21,7 +21,7 @@ const NEAREST_SHARE: f32 = 1.0 / 8.0;
 impl Frame {
     /// The taps of the frame's filter, or one.
     pub fn taps(&self) -> DpsmTaps<f32> {
-        let [_, tolerance] = self.settings.tolerances();
+        let tolerance = self.settings.too_near();
         DpsmTaps {
             count: match self.settings.filter {
                 Filter::Single => 1,

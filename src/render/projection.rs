@@ -71,7 +71,7 @@ impl Frame {
             return self.filtered(maps, p, normal, rotation);
         }
         let (light, quantum) = (self.light, self.settings.quantum());
-        let [_, tolerance] = self.settings.tolerances();
+        let tolerance = self.settings.too_near();
         let receiver = self.receiver(p, normal);
         match self.settings.bias_taken() {
             Bias::Plane => {
@@ -97,7 +97,7 @@ impl Frame {
     pub fn lookup(&self, p: Vec3<f32>, normal: Vec3<f32>) -> DpsmLookup<f32> {
         let (settings, light) = (&self.settings, self.light);
         let quantum = settings.quantum();
-        let [_, tolerance] = settings.tolerances();
+        let tolerance = settings.too_near();
         let receiver = self.receiver(p, normal);
         let texels = settings.window();
         match settings.method.projection() {

@@ -1,7 +1,9 @@
 //! What a rendering may vary, and what follows from it.
 
 use super::{FrameError, Projection, guard_band};
+use crate::scalar::edge::DPSM_EDGE_SNAP;
 use crate::scalar::maps::Sampling;
+use crate::scalar::refine::DPSM_REFINE_NEARER;
 use crate::scene::Mesh;
 
 /// Storage of a depth map.
@@ -47,8 +49,8 @@ pub enum Method {
     Tessellated,
     /// Each triangle as its arcs bound it, its distance computed for each texel.
     Exact,
-    /// Flat triangles where they are enough, exact ones elsewhere.
-    Hybrid,
+    /// Edges split until they lie within `tau` of their arcs, then plain triangles.
+    Refined,
     /// Six perspective faces, the baseline.
     Cube,
 }
@@ -74,11 +76,19 @@ impl Casting {
     }
 }
 
-impl Method {
-    /// True for the methods that sort triangles into a list for each map.
-    pub(crate) fn is_sorted(self) -> bool {
-        matches!(self, Self::Exact | Self::Hybrid)
-    }
+/// Smallest and largest `Settings::tau`, in texels.
+pub const SMALLEST_TAU: f32 = 1.0 / 64.0;
+/// See `SMALLEST_TAU`.
+pub const LARGEST_TAU: f32 = 4.0;
+
+/// How often refinement splits an edge at most. Each time halves the angle between its ends, below
+/// pi: after 6 times its chord is short in any case, and each further time takes the bow of what is
+/// left, 1/64 of the disk's radius, to a quarter. One more is the split at the light's foot.
+pub fn refinement_levels(size: u32, tau: f32) -> u32 {
+    let texel = 2.0 * (1.0 + guard_band(size)) / size as f32;
+    let reach = (0.9375 * tau - DPSM_EDGE_SNAP as f32) * texel;
+    let quarters = (1.0 / 64.0 / reach).log2() / 2.0;
+    6 + quarters.clamp(0.0, 16.0).ceil() as u32 + 2
 }
 
 /// How finely the tessellated method subdivides.
@@ -97,8 +107,7 @@ pub enum Passes {
     Single,
     /// All maps of a light in one pass, side by side in one layer.
     Atlas,
-    /// All maps of a light in one pass, one layer each, on adapters that have multiview; for the
-    /// methods that draw all triangles into each map: `Vertex`, `FragmentDepth`, `Tessellated`.
+    /// All maps of a light in one pass, one layer each, on adapters that have multiview.
     Multiview,
 }
 
@@ -219,9 +228,8 @@ impl Filter {
     }
 }
 
-/// The methods of paraboloid maps, and those of them that have multiview, as a message says it.
-const PARABOLOID: &str = "Vertex, FragmentDepth, Tessellated, Exact or Hybrid";
-const MULTIVIEW: &str = "Vertex, FragmentDepth or Tessellated";
+/// The methods of paraboloid maps, as a message says it.
+const PARABOLOID: &str = "Vertex, FragmentDepth, Tessellated, Exact or Refined";
 
 /// The settings of a rendering.
 #[derive(Clone, Debug, PartialEq)]
@@ -239,11 +247,15 @@ pub struct Settings {
     /// empty: all by `method`. `Frame::new` reads it; methods must draw the same kind of maps as
     /// `method`.
     pub casting: Vec<Casting>,
-    /// Hybrid method: how far an edge may be drawn from its place, in texels.
+    /// Refined method: how far an edge may be drawn from its place, in texels, from `SMALLEST_TAU`
+    /// to `LARGEST_TAU`.
     pub tau: f32,
-    /// Hybrid method: how far a stored distance may be off, relative; by default
+    /// Refined method: how far a stored distance may be off, relative; by default
     /// `depth_tolerance`.
     pub depth_tolerance: Option<f32>,
+    /// Refined method: the most triangles and vertices that refinement may add, for a bound on its
+    /// memory; more, and the maps are drawn exactly. By default as many as the lights need.
+    pub most_refined: Option<u32>,
     /// Tessellated method: how finely.
     pub level: Level,
     /// Cube method: leave out of each face what it cannot see.
@@ -285,10 +297,11 @@ impl Default for Settings {
             size: 1024,
             format: Format::D32,
             reversed: false,
-            method: Method::Hybrid,
+            method: Method::Refined,
             casting: Vec::new(),
-            tau: 1.0 / 32.0,
+            tau: 1.0 / 4.0,
             depth_tolerance: None,
+            most_refined: None,
             level: Level::Mesh(64),
             cull_faces: true,
             passes: Passes::Single,
@@ -319,11 +332,11 @@ pub fn constant_bias(size: u32, format: Format) -> f32 {
     (std::f32::consts::FRAC_1_SQRT_2 * pitch + format.quantum()).min(0.25)
 }
 
-/// The relative error of distances that the hybrid method is allowed: half the finest texel's
-/// width, 2 (1 + guard) / N at the rim, so that maps are as exact along a ray as across it, and at
-/// most 9/10 of the thousandth that makes a texel wrong (docs/measure.md).
+/// The relative error of distances that the refined method is allowed: half the finest texel's
+/// width, 2 (1 + guard) / N at the rim, which is a quarter of the coarsest's, so that maps of any
+/// size are as exact along a ray as across it; at most a sixteenth.
 pub fn depth_tolerance(size: u32) -> f32 {
-    ((1.0 + guard_band(size)) / size as f32).min(9e-4)
+    ((1.0 + guard_band(size)) / size as f32).min(1.0 / 16.0)
 }
 
 impl Settings {
@@ -357,6 +370,19 @@ impl Settings {
         all.into_iter().chain(self.casting.iter().filter_map(|casting| casting.method()))
     }
 
+    /// Refuses tolerances that the refined method cannot keep.
+    pub(super) fn check_tolerances(&self) -> Result<(), FrameError> {
+        if !(SMALLEST_TAU..=LARGEST_TAU).contains(&self.tau) {
+            return Err(FrameError::Tau(self.tau));
+        }
+        match self.depth_tolerance {
+            Some(tolerance) if !(0.0..=1.0).contains(&tolerance) => {
+                Err(FrameError::DepthTolerance(tolerance))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses castings that do not fit the scene's meshes, the maps or the passes.
     pub(super) fn check_casting(&self, meshes: &[Mesh]) -> Result<(), FrameError> {
         if ![0, meshes.len()].contains(&self.casting.len()) {
@@ -369,9 +395,6 @@ impl Settings {
                 (Projection::Cube, Method::Cube) => continue,
                 (Projection::Cube, _) => ("the light's maps are the faces of a cube", "Cube"),
                 (_, Method::Cube) => ("the light's maps are paraboloid", PARABOLOID),
-                _ if method.is_sorted() && self.passes == Passes::Multiview => {
-                    ("that draws a list of triangles for each map, without multiview", MULTIVIEW)
-                }
                 _ => continue,
             };
             return Err(FrameError::Casting { mesh: mesh.name.clone(), method, why, remedy });
@@ -387,9 +410,6 @@ impl Settings {
             (Passes::Multiview, Method::Cube) => {
                 Err(FrameError::Cube { what: "multiview", remedy })
             }
-            (Passes::Multiview, _) if self.methods().any(Method::is_sorted) => {
-                Err(FrameError::Multiview)
-            }
             _ => Ok(()),
         }
     }
@@ -400,10 +420,16 @@ impl Settings {
         of.fold([0.0; 2], |[a, b], [tau, depth]| [a.max(tau), b.max(depth)])
     }
 
-    /// tau and depth tolerance of a method: both 0 for all but the hybrid one.
+    /// How much nearer than what it shows a stored distance may be, relative: what a receiver's bias
+    /// must allow for the maps' own tolerance.
+    pub fn too_near(&self) -> f32 {
+        DPSM_REFINE_NEARER as f32 * self.tolerances()[1]
+    }
+
+    /// tau and depth tolerance of a method: both 0 for all but the refined one.
     pub fn tolerances_of(&self, method: Method) -> [f32; 2] {
         match method {
-            Method::Hybrid => {
+            Method::Refined => {
                 let depth = self.depth_tolerance.unwrap_or_else(|| depth_tolerance(self.size));
                 [self.tau, depth]
             }

@@ -13,7 +13,7 @@ use crate::scalar::maps::{DepthMaps, Sampling};
 use crate::scene::{self, Options};
 
 /// Methods of the curves; the tessellated one, which is slow, is left out.
-const METHODS: [Method; 4] = [Method::Vertex, Method::Exact, Method::Hybrid, Method::Cube];
+const METHODS: [Method; 4] = [Method::Vertex, Method::Exact, Method::Refined, Method::Cube];
 
 /// What the horizontal axes show; the ports take the first of each alone.
 const TRIANGLES: [u32; 5] = [1_000, 4_000, 16_000, 64_000, 250_000];
@@ -127,7 +127,7 @@ fn generation(
 fn taps(device: &Device, job: &Job<'_>) -> Result<Curves, ReportError> {
     let room = scene::open("brabec-room", &Options::default())?;
     let subject = Subject::new(room, None);
-    let settings = of(job.effort, Method::Hybrid, job.effort.size / 2);
+    let settings = of(job.effort, Method::Refined, job.effort.size / 2);
     let frame = subject.frame(&settings)?;
     let mesh = MeshBuffers::new(device, &frame)?;
     let maps = ShadowMaps::new(device, &frame, &mesh)?;

@@ -256,7 +256,7 @@ pub struct Curve {
 pub struct Image {
     /// Its scene.
     pub scene: String,
-    /// What it is, unique in its scene: lit, front-map, hybrid-errors, ...
+    /// What it is, unique in its scene: lit, front-map, refined-errors, ...
     pub kind: String,
     /// A title of a few words.
     pub title: String,

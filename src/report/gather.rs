@@ -273,7 +273,7 @@ fn figures(error: &ShadowError, seen: &SeenError) -> ErrorFigures {
 /// True of the variants whose error is attributed to its sources: the default one, and the
 /// original method as large.
 fn is_explained(choice: &Choice, effort: &Effort) -> bool {
-    let explained = [Method::Hybrid, Method::Vertex];
+    let explained = [Method::Refined, Method::Vertex];
     let wanted = |&method: &Method| Choice::of(&variants::of(effort, method, effort.size));
     explained.iter().any(|method| *choice == wanted(method))
 }

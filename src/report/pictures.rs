@@ -29,14 +29,14 @@ pub fn pictures(
 ) -> Result<Vec<Image>, ReportError> {
     let pictured = |method| variants::pictured(job.effort, method);
     let mut gallery = Gallery { scene: &subject.name, images: Vec::new() };
-    let size = pictured(Method::Hybrid).size;
-    let frame = subject.frame(&Settings { views: true, ..pictured(Method::Hybrid) })?;
+    let size = pictured(Method::Refined).size;
+    let frame = subject.frame(&Settings { views: true, ..pictured(Method::Refined) })?;
     let Rendering { lit, maps: stored, views, .. } = render(job, &frame)?;
     let caption = format!(
-        "The scene lit by the default method, hybrid, with maps of {size} x {size} texels. Shadows \
+        "The scene lit by the default method, refined, with maps of {size} x {size} texels. Shadows \
          should begin where casters touch the ground, with straight edges where casters have them."
     );
-    gallery.add("lit", "Lit, hybrid method", caption, &lit)?;
+    gallery.add("lit", "Lit, refined method", caption, &lit)?;
     let by_vertex = subject.frame(&pictured(Method::Vertex))?;
     let caption = format!(
         "The same by the method of Brabec 2002, which projects vertices and draws straight edges \
@@ -66,7 +66,7 @@ pub fn pictures(
     let bench = Bench::new(&frame, &empty, truth);
     let lit: Vec<bool> =
         seen.par_iter().map(|point| point.is_some_and(|point| bench.sees(&point))).collect();
-    for method in [Method::Hybrid, Method::Vertex, Method::Cube] {
+    for method in [Method::Refined, Method::Vertex, Method::Cube] {
         let Some(maps) = maps(method) else { continue };
         let frame = subject.frame(&pictured(method))?;
         let bench = Bench::new(&frame, &maps, truth);

@@ -29,7 +29,7 @@ const PALETTE: [RGBColor; 6] = [
 
 /// The colour of a method, of another name by its place.
 pub fn color(name: &str, place: usize) -> RGBColor {
-    let known = ["hybrid", "vertex", "cube", "tessellated", "fragment-depth", "exact"];
+    let known = ["refined", "vertex", "cube", "tessellated", "fragment-depth", "exact"];
     let method = known.iter().position(|method| name.split([' ', ',']).next() == Some(method));
     PALETTE[method.unwrap_or(place) % PALETTE.len()]
 }

@@ -73,13 +73,13 @@ fn sets(choices: &[Choice]) -> (Vec<Choice>, Vec<usize>) {
     (sets, of_choices)
 }
 
-/// True of the usual hybrid maps.
-fn is_hybrid(set: &Choice) -> bool {
-    set.settings.method == Method::Hybrid && set.around.is_none()
+/// True of the usual refined maps.
+fn is_refined(set: &Choice) -> bool {
+    set.settings.method == Method::Refined && set.around.is_none()
 }
 
 /// Everything but what draws.
-const EMPTY: Parts = Parts { sort: false, draw: true, flat: false, steep: false, curved: false };
+const EMPTY: Parts = Parts { sort: false, draw: true, flat: false, planes: false };
 
 /// Times by the adapter's timestamps.
 pub fn by_adapter(
@@ -110,9 +110,9 @@ pub fn by_adapter(
     let made: Vec<(ShadowMaps, &MeshBuffers)> =
         made.into_iter().map(|(maps, index)| (maps, &meshes[index].1)).collect();
     // first, so that the maps that it empties are made again after it
-    let hybrid = wanted.iter().rposition(is_hybrid);
+    let refined = wanted.iter().rposition(is_refined);
     let mut records: Vec<Record<'_>> = Vec::new();
-    records.extend(hybrid.map(|index| -> Record<'_> {
+    records.extend(refined.map(|index| -> Record<'_> {
         let (maps, mesh) = &made[index];
         Box::new(move |encoder, stamps| maps.record_parts(encoder, mesh, stamps, EMPTY))
     }));
@@ -120,7 +120,7 @@ pub fn by_adapter(
         Box::new(move |encoder, stamps| maps.record(encoder, mesh, stamps))
     }));
     let mut generation = in_turn(device, "the maps", &records, job.effort.runs, MS)?;
-    let empty_pass = hybrid.map(|_| generation.remove(0));
+    let empty_pass = refined.map(|_| generation.remove(0));
 
     (job.step)("lookups");
     let tests = PointTests::new(device)?;

@@ -55,7 +55,7 @@ pub fn planned(subject: &Subject, effort: &Effort) -> Result<Planned, PlanError>
         ..Request::new(&subject.scene, ERROR)
     };
     let plan = plan(&request)?;
-    let settings = plan.settings(&of(effort, Method::Hybrid, effort.size))?;
+    let settings = plan.settings(&of(effort, Method::Refined, effort.size))?;
     let choice = Choice::of(&settings);
     let maps = if plan.is_hemispherical() { "1 map" } else { "2 maps" };
     let name = format!("plan: {}, {maps}", choice.name);
@@ -72,7 +72,7 @@ pub fn planned(subject: &Subject, effort: &Effort) -> Result<Planned, PlanError>
 
 /// The default: what the pictures and the attribution of error show.
 pub fn default_settings(effort: &Effort) -> Settings {
-    of(effort, Method::Hybrid, effort.size)
+    of(effort, Method::Refined, effort.size)
 }
 
 /// A method's settings for maps of a size.
@@ -107,7 +107,7 @@ pub fn choices(
         let some: &[u32] = if ports { &[middle] } else { &[middle, large] };
         wanted.extend(some.iter().map(|&size| of(effort, method, size)));
     }
-    wanted.extend(all.iter().map(|&size| of(effort, Method::Hybrid, size)));
+    wanted.extend(all.iter().map(|&size| of(effort, Method::Refined, size)));
     let read = Settings { size: middle, ..default_settings(effort) };
     wanted.push(Settings { format: Format::D16, ..read.clone() });
     wanted.push(Settings { bias: Bias::TexelCentre, ..read.clone() });
@@ -226,7 +226,7 @@ pub fn method_name(method: Method) -> &'static str {
         Method::FragmentDepth => "fragment-depth",
         Method::Tessellated => "tessellated",
         Method::Exact => "exact",
-        Method::Hybrid => "hybrid",
+        Method::Refined => "refined",
         Method::Cube => "cube",
     }
 }

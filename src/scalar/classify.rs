@@ -1,32 +1,14 @@
 //! Port of `wgsl/classify.wesl`.
 
-use super::caster::dpsm_caster_border;
-use super::edge::{
-    DPSM_EDGE_ROUNDING, DPSM_EDGE_SNAP, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_unit,
-};
+use super::edge::{DPSM_EDGE_ROUNDING, DPSM_EDGE_SNAP, dpsm_edge_terms};
 use super::float::{Float, Vec2, Vec3, Vec4, select};
-use super::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip};
+use super::hemisphere::DPSM_FRONT;
 use super::light::DpsmLight;
 use super::paraboloid::{DPSM_SMALLEST, dpsm_project, dpsm_texel_width};
-use super::triangle::{DPSM_TRIANGLE_CHORD, DpsmHull, dpsm_triangle_plane};
+use super::triangle::{DPSM_TRIANGLE_CHORD, DpsmHull};
 
 /// Not drawn: outside the clipping spheres, without area, not finite, or between texel centres.
 pub const DPSM_CULLED: u32 = 0;
-
-/// As it is, with no fragment stage: inside one stored disk and touching no other.
-pub const DPSM_FLAT: u32 = 1;
-
-/// As it is, but with the plane's distance at each fragment.
-pub const DPSM_STEEP: u32 = 5;
-
-/// As it is, in both maps, cut at the stored disk's border by the fragment stage.
-pub const DPSM_STRADDLING: u32 = 2;
-
-/// By its hull, with module triangle in the fragment stage.
-pub const DPSM_CURVED: u32 = 3;
-
-/// As a curved one, but by the hulls of its parts.
-pub const DPSM_LARGE: u32 = 4;
 
 /// Bit of the front hemisphere, whose stored disk a triangle may touch.
 pub const DPSM_IN_FRONT: u32 = 1;
@@ -34,13 +16,15 @@ pub const DPSM_IN_FRONT: u32 = 1;
 /// Bit of the back hemisphere.
 pub const DPSM_IN_BACK: u32 = 2;
 
-/// What becomes of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DpsmClass {
-    /// DPSM_CULLED, DPSM_FLAT, DPSM_STRADDLING, DPSM_CURVED or DPSM_LARGE.
-    pub kind: u32,
-    /// DPSM_IN_FRONT, DPSM_IN_BACK or both; 0 for a culled one.
-    pub hemispheres: u32,
+/// A vertex as a map sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DpsmProjected<T> {
+    /// Light space, flipped for the map.
+    pub p: Vec3<T>,
+    /// Its distance from the light.
+    pub distance: T,
+    /// Its disk coordinates.
+    pub uv: Vec2<T>,
 }
 
 /// Largest coordinate of a usable vertex, 2^62.
@@ -58,88 +42,62 @@ pub const DPSM_CLASSIFY_FACING: f64 = 1.0 / (1u64 << 60) as f64;
 /// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
 pub const DPSM_CLASSIFY_SPREAD: f64 = (1u64 << 40) as f64;
 
-/// The least height of a steep triangle's plane, as a share of the farthest vertex's distance.
-pub const DPSM_CLASSIFY_EDGE_ON: f64 = 1.0 / 1024.0;
-
 /// True where every component is a number up to 2^62.
 pub fn dpsm_classify_usable<T: Float>(p: Vec3<T>) -> bool {
     [p.x, p.y, p.z].iter().all(|c| c.abs() <= T::lit(DPSM_CLASSIFY_LARGEST))
 }
 
-/// The class of a triangle of light-space vertices, not flipped.
+/// A vertex as a map sees it, from its position in light space, flipped for the map.
+pub fn dpsm_projected<T: Float>(p: Vec3<T>) -> DpsmProjected<T> {
+    DpsmProjected { p, distance: p.length(), uv: dpsm_project(p) }
+}
+
+/// The maps into which a triangle is drawn: DPSM_IN_FRONT, DPSM_IN_BACK, both, or DPSM_CULLED.
 pub fn dpsm_classify<T: Float>(
-    a: Vec3<T>,
-    b: Vec3<T>,
-    c: Vec3<T>,
+    first: DpsmProjected<T>,
+    second: DpsmProjected<T>,
+    third: DpsmProjected<T>,
+    height: T,
+    own: u32,
     light: DpsmLight<T>,
-    tau: T,
-    depth_tolerance: T,
-) -> DpsmClass {
-    let zero = T::lit(0.0);
-    let culled = DpsmClass { kind: DPSM_CULLED, hemispheres: 0 };
-    if ![a, b, c].into_iter().all(dpsm_classify_usable) {
-        return culled;
+) -> u32 {
+    if ![first.p, second.p, third.p].into_iter().all(dpsm_classify_usable) {
+        return DPSM_CULLED;
     }
-    let lengths = Vec3::new(a.length(), b.length(), c.length());
-    let farthest = lengths.x.max(lengths.y).max(lengths.z);
+    let farthest = first.distance.max(second.distance).max(third.distance);
     if farthest < light.near {
-        return culled;
+        return DPSM_CULLED;
     }
-    // in the map that shows more of it
-    let own = select(DPSM_BACK, DPSM_FRONT, a.z + b.z + c.z >= zero);
-    let p = dpsm_flip(a, own);
-    let q = dpsm_flip(b, own);
-    let r = dpsm_flip(c, own);
-    let disk_p = dpsm_project(p);
-    let disk_q = dpsm_project(q);
-    let disk_r = dpsm_project(r);
-    let pq = disk_q - disk_p;
-    let qr = disk_r - disk_q;
-    let rp = disk_p - disk_r;
-    let longest = pq.dot(pq).max(qr.dot(qr)).max(rp.dot(rp));
+    let ab = second.uv - first.uv;
+    let bc = third.uv - second.uv;
+    let ca = first.uv - third.uv;
+    let longest = ab.dot(ab).max(bc.dot(bc)).max(ca.dot(ca));
     let small = longest <= T::lit(DPSM_TRIANGLE_CHORD * DPSM_TRIANGLE_CHORD);
-    let outer = disk_p.dot(disk_p).max(disk_q.dot(disk_q)).max(disk_r.dot(disk_r));
+    let outer = first.uv.dot(first.uv).max(second.uv.dot(second.uv)).max(third.uv.dot(third.uv));
     // no point of a small triangle is farther on the disk from a corner than its longest chord
     let reach = (outer.sqrt() + longest.sqrt()) * (T::lit(1.0) + light.guard);
     let both = !small || reach >= T::lit(DPSM_CLASSIFY_RIM);
-    if !both && dpsm_classify_misses(disk_p, disk_q, disk_r, light) {
-        return culled;
+    // no arc lies farther from its chord than c^2 / 4
+    if !both && dpsm_classify_misses(first.uv, second.uv, third.uv, light, T::lit(0.25) * longest) {
+        return DPSM_CULLED;
     }
-    let plane = dpsm_triangle_plane(p, q, r);
-    let height = plane.w.abs();
     // a plane that holds the light is seen edge-on; rounding of the height is far below 1/1024
-    let seen = height > zero;
-    if !seen || height > light.far + T::lit(1.0 / 1024.0) * farthest {
-        return culled;
+    let away = height.abs();
+    let seen = away > T::lit(0.0);
+    if !seen || away > light.far + T::lit(1.0 / 1024.0) * farthest {
+        return DPSM_CULLED;
     }
     let own_bit = select(DPSM_IN_BACK, DPSM_IN_FRONT, own == DPSM_FRONT);
-    let hemispheres = select(own_bit, DPSM_IN_FRONT | DPSM_IN_BACK, both);
-    if small
-        && dpsm_edge_flat(p, q, light, tau)
-        && dpsm_edge_flat(q, r, light, tau)
-        && dpsm_edge_flat(r, p, light, tau)
-    {
-        let disks = DpsmHull { a: disk_p, b: disk_q, c: disk_r };
-        let error = dpsm_classify_flat_error(disks, lengths, plane);
-        if error <= depth_tolerance {
-            return DpsmClass { kind: select(DPSM_FLAT, DPSM_STRADDLING, both), hemispheres };
-        }
-        // clear of the clipping spheres, at which interpolated distances would be cut, and not so
-        // edge-on that its plane runs off beside it
-        let clear = height > light.near.max(T::lit(DPSM_CLASSIFY_EDGE_ON) * farthest);
-        if !both && clear && farthest < light.far {
-            return DpsmClass { kind: DPSM_STEEP, hemispheres };
-        }
-    }
-    DpsmClass { kind: select(DPSM_CURVED, DPSM_LARGE, both), hemispheres }
+    select(own_bit, DPSM_IN_FRONT | DPSM_IN_BACK, both)
 }
 
-/// Largest relative error of a plane's distance when it is interpolated between three disk points.
+/// Largest relative errors of a plane's distance when it is interpolated between three disk points:
+/// how much too near, and how much too far.
 pub fn dpsm_classify_flat_error<T: Float>(
     hull: DpsmHull<T>,
     distances: Vec3<T>,
     plane: Vec4<T>,
-) -> T {
+) -> Vec2<T> {
     let half = T::lit(0.5);
     let ab = dpsm_classify_distance(plane, (hull.a + hull.b) * half);
     let bc = dpsm_classify_distance(plane, (hull.b + hull.c) * half);
@@ -154,7 +112,10 @@ pub fn dpsm_classify_flat_error<T: Float>(
     let sides = [hull.b - hull.a, hull.c - hull.b, hull.a - hull.c].map(square);
     let longest = sides[0].max(sides[1]).max(sides[2]);
     let unseen = T::lit(0.25) * spread * (longest + spread * spread);
-    T::lit(1.5) * errors.x.abs().max(errors.y.abs()).max(errors.z.abs()) / unit + unseen
+    let low = errors.x.min(errors.y).min(errors.z);
+    let high = errors.x.max(errors.y).max(errors.z);
+    let zero = Vec2::splat(T::lit(0.0));
+    Vec2::new(-low, high).max(zero) * T::lit(1.5) / unit + Vec2::splat(unseen)
 }
 
 /// The distance of a plane (unit normal, height) in the direction of uv; below 0 behind.
@@ -165,24 +126,22 @@ pub fn dpsm_classify_distance<T: Float>(plane: Vec4<T>, uv: Vec2<T>) -> T {
     plane.w * (T::lit(1.0) + uv.dot(uv)) / seen
 }
 
-/// True where a triangle of disk corners covers no texel centre, whether its edges are drawn as
-/// chords or as arcs.
+/// True where a triangle of disk corners, and what lies within `bow` of it on the disk, covers no
+/// texel centre.
 pub fn dpsm_classify_misses<T: Float>(
     a: Vec2<T>,
     b: Vec2<T>,
     c: Vec2<T>,
     light: DpsmLight<T>,
+    bow: T,
 ) -> bool {
     let one = T::lit(1.0);
     let half = T::lit(0.5);
     let ab = b - a;
     let bc = c - b;
     let ca = a - c;
-    let longest = ab.dot(ab).max(bc.dot(bc)).max(ca.dot(ca));
     let texel = dpsm_texel_width(light.size, light.guard);
-    // no arc lies farther from its chord than c^2 / 4
-    let outside =
-        T::lit(DPSM_EDGE_SNAP) * texel + T::lit(DPSM_EDGE_ROUNDING) + T::lit(0.25) * longest;
+    let outside = T::lit(DPSM_EDGE_SNAP) * texel + T::lit(DPSM_EDGE_ROUNDING) + bow;
     // texel centres are at whole numbers
     let middle = Vec2::splat(half * light.size - half);
     let around = Vec2::splat(outside);
@@ -216,66 +175,4 @@ pub fn dpsm_classify_misses<T: Float>(
         }
     }
     true
-}
-
-/// A part of a triangle: unit vectors to its corners.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DpsmPart<T> {
-    /// First corner.
-    pub a: Vec3<T>,
-    /// Second corner.
-    pub b: Vec3<T>,
-    /// Third corner.
-    pub c: Vec3<T>,
-}
-
-/// A part of a triangle, by halving it over and over at its longest edge.
-pub fn dpsm_classify_part<T: Float>(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>, path: u32) -> DpsmPart<T> {
-    let mut part = DpsmPart { a: dpsm_edge_unit(a), b: dpsm_edge_unit(b), c: dpsm_edge_unit(c) };
-    for bit in (0..(path | 1).ilog2()).rev() {
-        part = dpsm_classify_half(part, (path >> bit) & 1 != 0);
-    }
-    part
-}
-
-/// One half of a part: its longest edge's middle takes the place of that edge's first or, for
-/// `second`, last corner.
-pub fn dpsm_classify_half<T: Float>(part: DpsmPart<T>, second: bool) -> DpsmPart<T> {
-    let ab = part.b - part.a;
-    let bc = part.c - part.b;
-    let ca = part.a - part.c;
-    let squares = Vec3::new(ab.dot(ab), bc.dot(bc), ca.dot(ca));
-    // turned so that the edge from a to b is the longest
-    let mut turned = part;
-    if squares.y > squares.x && squares.y >= squares.z {
-        turned = DpsmPart { a: part.b, b: part.c, c: part.a };
-    } else if squares.z > squares.x {
-        turned = DpsmPart { a: part.c, b: part.a, c: part.b };
-    }
-    let middle = dpsm_edge_unit(turned.a + turned.b);
-    if second {
-        return DpsmPart { a: turned.a, b: middle, c: turned.c };
-    }
-    DpsmPart { a: middle, b: turned.b, c: turned.c }
-}
-
-/// What becomes of a part: DPSM_CULLED where it does not touch the stored disk, DPSM_CURVED where
-/// a hull surrounds it well, DPSM_LARGE where it must be halved.
-pub fn dpsm_classify_kind<T: Float>(part: DpsmPart<T>, light: DpsmLight<T>) -> u32 {
-    // beyond the border is at most a hemisphere: convex, so that its corners speak for a part
-    let top = part.a.z.max(part.b.z).max(part.c.z) + T::lit(DPSM_EDGE_ROUNDING);
-    if top < dpsm_caster_border(light.guard) {
-        return DPSM_CULLED;
-    }
-    let disk_a = dpsm_project(part.a);
-    let disk_b = dpsm_project(part.b);
-    let disk_c = dpsm_project(part.c);
-    let disk_ab = disk_b - disk_a;
-    let disk_ca = disk_a - disk_c;
-    let chord = disk_ab.length().max((disk_c - disk_b).length()).max(disk_ca.length());
-    let area = (disk_ca.x * disk_ab.y - disk_ca.y * disk_ab.x).abs();
-    // arcs bow by up to c^2 / 8: more than a texel and the part's own width wastes fragments
-    let bow = T::lit(0.125) * chord * chord;
-    let wide = bow > dpsm_texel_width(light.size, light.guard) && bow * chord > area;
-    select(DPSM_CURVED, DPSM_LARGE, chord > T::lit(DPSM_TRIANGLE_CHORD) || wide)
 }

@@ -1,8 +1,6 @@
 //! Port of `wgsl/edge.wesl`.
 
 use super::float::{Float, Vec2, Vec3, Vec4, select};
-use super::light::DpsmLight;
-use super::paraboloid::{dpsm_project_own, dpsm_texel_width};
 
 /// How far on the disk rounding may move an arc: 32 eps.
 pub const DPSM_EDGE_ROUNDING: f64 = 1.0 / (1u64 << 18) as f64;
@@ -63,42 +61,15 @@ pub fn dpsm_edge_sagitta<T: Float>(normal_z: T, chord: Vec2<T>) -> T {
     quarter * normal_z / (one + (one - square).max(T::lit(0.0)).sqrt())
 }
 
-/// How far from an edge's arc its chord may be drawn, in disk units.
-pub fn dpsm_edge_bow<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>) -> T {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let snap = T::lit(DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
-    snap + dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord).abs()
-}
-
-/// True where an edge may be drawn as its chord.
-pub fn dpsm_edge_flat<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>, tau: T) -> bool {
-    let limit = T::lit(0.9375) * tau * dpsm_texel_width(light.size, light.guard);
-    dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= T::lit(0.0)
-}
-
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
 pub fn dpsm_edge_terms<T: Float>(uv: Vec2<T>) -> Vec4<T> {
     let one = T::lit(1.0);
     Vec4::new(uv.x + uv.x, uv.y + uv.y, one - uv.dot(uv), one)
 }
 
-/// The line of an edge: its arc, or that moved to its chord.
-pub fn dpsm_edge_line<T: Float>(a: Vec3<T>, b: Vec3<T>, light: DpsmLight<T>, tau: T) -> Vec4<T> {
+/// The line of an edge: its arc.
+pub fn dpsm_edge_line<T: Float>(a: Vec3<T>, b: Vec3<T>) -> Vec4<T> {
     let (zero, half) = (T::lit(0.0), T::lit(0.5));
     let normal = dpsm_edge_normal(a, b);
-    let some = normal.dot(normal) > zero;
-    if !some {
-        return Vec4::new(zero, zero, zero, T::lit(-1.0));
-    }
-    if !dpsm_edge_flat(a, b, light, tau) {
-        return (normal * half).extend(zero);
-    }
-    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
-    if normal.z >= zero {
-        let snap = T::lit(DPSM_EDGE_SNAP) * dpsm_texel_width(light.size, light.guard);
-        return (normal * half).extend(snap);
-    }
-    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
-    let most = select(T::lit(16.0 / 15.0), T::lit(64.0 / 15.0), a.z + b.z < zero);
-    (normal * half).extend(most * dpsm_edge_bow(a, b, light))
+    (normal * half).extend(select(T::lit(-1.0), zero, normal.dot(normal) > zero))
 }

@@ -14,8 +14,10 @@ use super::kernel::*;
 use super::light::*;
 use super::lights::*;
 use super::paraboloid::*;
+use super::part::*;
 use super::pcss::*;
 use super::plane::*;
+use super::refine::*;
 use super::shade::*;
 use super::tessellate::*;
 use super::triangle::*;
@@ -135,7 +137,8 @@ flat! {
     DpsmCasterFragment { depth, keep }
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
-    DpsmTriangle { first, second, third, plane, span }
+    DpsmTriangle { first, second, third, face, span }
+    DpsmProjected { p, distance, uv }
     DpsmHull { a, b, c }
     DpsmPart { a, b, c }
     DpsmCorner { position, normal }
@@ -151,15 +154,6 @@ flat! {
     }
     DpsmFour { s, t, crossed }
     DpsmContact { sum, farthest }
-}
-
-impl<T> Flat<T> for DpsmClass {
-    fn read(words: &mut dyn Iterator<Item = Word<T>>) -> Option<Self> {
-        Some(Self { kind: Flat::read(words)?, hemispheres: Flat::read(words)? })
-    }
-    fn write(self, words: &mut Vec<Word<T>>) {
-        (self.kind, self.hemispheres).write(words);
-    }
 }
 
 macro_rules! tuple {
@@ -268,18 +262,25 @@ ports! {
     }
     edge {
         dpsm_edge_largest, dpsm_edge_unit, dpsm_edge_ordered, dpsm_edge_normal,
-        dpsm_edge_sagitta, dpsm_edge_bow, dpsm_edge_flat, dpsm_edge_terms, dpsm_edge_line,
+        dpsm_edge_sagitta, dpsm_edge_terms, dpsm_edge_line,
     }
     triangle {
-        dpsm_triangle_plane, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_inside,
+        dpsm_triangle_plane, dpsm_triangle_face, dpsm_triangle, dpsm_triangle_span, dpsm_triangle_inside,
         dpsm_triangle_covers, dpsm_triangle_distance, dpsm_triangle_disk, dpsm_triangle_behind,
         dpsm_triangle_fragment, dpsm_triangle_weights, dpsm_triangle_hull, dpsm_triangle_tip,
         dpsm_triangle_needle,
     }
     classify {
-        dpsm_classify_usable, dpsm_classify, dpsm_classify_flat_error, dpsm_classify_distance,
-        dpsm_classify_misses, dpsm_classify_part, dpsm_classify_half, dpsm_classify_kind,
+        dpsm_classify_usable, dpsm_projected, dpsm_classify, dpsm_classify_flat_error,
+        dpsm_classify_distance, dpsm_classify_misses,
     }
+    refine {
+        dpsm_refine_point, dpsm_refine_reach, dpsm_refine_long, dpsm_refine_splits,
+        dpsm_refine_corners integers, dpsm_refine_turned integers, dpsm_refine_edge integers, dpsm_refine_fat, dpsm_refine_foot, dpsm_refine_outside,
+        dpsm_refine_flat,
+        dpsm_refine_clip,
+    }
+    part { dpsm_part, dpsm_part_half, dpsm_part_kind }
     visibility { dpsm_lookup, dpsm_receiver_vertex }
     bias {
         dpsm_position_error, dpsm_receiver, dpsm_receiver_cosine, dpsm_receiver_distance, dpsm_bias_slack,

@@ -20,7 +20,7 @@ pub struct DpsmTriangle<T> {
     /// Edge from the third to the first.
     pub third: Vec4<T>,
     /// Normal times largest distance over height, and the largest distance of a vertex.
-    pub plane: Vec4<T>,
+    pub face: Vec4<T>,
     /// Its extent along its longest chord.
     pub span: Vec3<T>,
 }
@@ -63,28 +63,33 @@ pub fn dpsm_triangle_plane<T: Float>(a: Vec3<T>, b: Vec3<T>, c: Vec3<T>) -> Vec4
     unit.extend(unit.dot(nearest))
 }
 
+/// A triangle's plane as its fragments need it: the normal, turned away from the light, times the
+/// largest distance of a vertex over the height, and that distance.
+pub fn dpsm_triangle_face<T: Float>(plane: Vec4<T>, farthest: T) -> Vec4<T> {
+    // 2^-120: below every share within the domain; all vertices may be at the light
+    let least = T::lit(1.0 / (1u128 << 120) as f64);
+    let height = plane.w.abs().max(farthest * T::lit(DPSM_TRIANGLE_HEIGHT)).max(least);
+    let outward = select(plane.xyz(), -plane.xyz(), plane.w < T::lit(0.0));
+    (outward * (farthest / height)).extend(farthest)
+}
+
 /// Prepares a triangle for its fragments.
 pub fn dpsm_triangle<T: Float>(
     a: Vec3<T>,
     b: Vec3<T>,
     c: Vec3<T>,
     light: DpsmLight<T>,
-    tau: T,
 ) -> DpsmTriangle<T> {
     let plane = dpsm_triangle_plane(a, b, c);
     let turned = plane.w < T::lit(0.0);
     let second = select(b, c, turned);
     let third = select(c, b, turned);
     let farthest = a.length().max(b.length()).max(c.length());
-    // 2^-120: below every share within the domain; all vertices may be at the light
-    let least = T::lit(1.0 / (1u128 << 120) as f64);
-    let height = plane.w.abs().max(farthest * T::lit(DPSM_TRIANGLE_HEIGHT)).max(least);
-    let outward = select(plane.xyz(), -plane.xyz(), turned);
     DpsmTriangle {
-        first: dpsm_edge_line(a, second, light, tau),
-        second: dpsm_edge_line(second, third, light, tau),
-        third: dpsm_edge_line(third, a, light, tau),
-        plane: (outward * (farthest / height)).extend(farthest),
+        first: dpsm_edge_line(a, second),
+        second: dpsm_edge_line(second, third),
+        third: dpsm_edge_line(third, a),
+        face: dpsm_triangle_face(plane, farthest),
         span: dpsm_triangle_span(a, b, c, light),
     }
 }
@@ -153,10 +158,10 @@ pub fn dpsm_triangle_covers<T: Float>(triangle: DpsmTriangle<T>, uv: Vec2<T>) ->
 
 /// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
 /// vertex.
-pub fn dpsm_triangle_distance<T: Float>(triangle: DpsmTriangle<T>, uv: Vec2<T>) -> T {
+pub fn dpsm_triangle_distance<T: Float>(face: Vec4<T>, uv: Vec2<T>) -> T {
     let terms = dpsm_edge_terms(uv);
     let whole = T::lit(1.0) + uv.dot(uv);
-    triangle.plane.w * whole / triangle.plane.xyz().dot(terms.xyz()).max(whole)
+    face.w * whole / face.xyz().dot(terms.xyz()).max(whole)
 }
 
 /// The disk coordinates of a fragment's position in a map whose middle is at `middle` texels.
@@ -167,10 +172,10 @@ pub fn dpsm_triangle_disk<T: Float>(position: Vec2<T>, middle: Vec2<T>, texel: T
 /// A distance on a triangle's plane where rounding alone has it cover a point outside: behind what
 /// rounding may have brought it forward.
 pub fn dpsm_triangle_behind<T: Float>(triangle: DpsmTriangle<T>, l: T) -> T {
-    let farthest = triangle.plane.w.max(T::lit(DPSM_EDGE_NEAREST));
-    let steepness = l * triangle.plane.xyz().length() / farthest;
+    let farthest = triangle.face.w.max(T::lit(DPSM_EDGE_NEAREST));
+    let steepness = l * triangle.face.xyz().length() / farthest;
     let share = T::lit(1.0) - T::lit(2.0 * DPSM_EDGE_ROUNDING) * steepness;
-    (l / share.max(T::lit(DPSM_EDGE_NEAREST))).min(triangle.plane.w)
+    (l / share.max(T::lit(DPSM_EDGE_NEAREST))).min(triangle.face.w)
 }
 
 /// The fragment of a prepared triangle at uv: its depth, and whether it is kept.
@@ -181,7 +186,7 @@ pub fn dpsm_triangle_fragment<T: Float>(
     bias: T,
 ) -> DpsmCasterFragment<T> {
     let one = T::lit(1.0);
-    let mut l = dpsm_triangle_distance(triangle, uv);
+    let mut l = dpsm_triangle_distance(triangle.face, uv);
     if dpsm_triangle_inside(triangle, uv) < T::lit(0.0) {
         l = dpsm_triangle_behind(triangle, l);
     }

@@ -21,6 +21,24 @@ fn picture(rendering: &Rendering) -> (Vec<[u8; 4]>, Option<DepthMaps>) {
     (rendering.lit.pixels.clone(), rendering.maps.clone())
 }
 
+/// Pixels and texels that differ by more than a tenth, and than the tolerance that the maps have.
+fn differing(
+    a: &(Vec<[u8; 4]>, Option<DepthMaps>),
+    b: &(Vec<[u8; 4]>, Option<DepthMaps>),
+) -> usize {
+    let far = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 24);
+    let pixels = a.0.iter().zip(&b.0).filter(far).count();
+    let (Some(a), Some(b)) = (&a.1, &b.1) else { return pixels };
+    let side = a.size as usize;
+    let apart = |&index: &usize| {
+        // beyond the stored disk there is whatever there is
+        let at = |place: usize| (place % side) as f64 + 0.5 - side as f64 / 2.0;
+        let is_read = at(index).hypot(at(index / side)) < 0.45 * side as f64;
+        is_read && (a.depths[index] - b.depths[index]).abs() > 0.05
+    };
+    pixels + (0..a.depths.len()).filter(apart).count()
+}
+
 #[test]
 fn adapter_without_features_renders_the_same_and_times_by_the_clock() {
     let Some((device, _alone)) = adapter() else { return };
@@ -29,7 +47,7 @@ fn adapter_without_features_renders_the_same_and_times_by_the_clock() {
     let plain = Device::with_features(&adapter, none, adapter.limits()).unwrap();
     assert_eq!(plain.device.features() & Device::FEATURES, none);
     let [with, without] =
-        [&device, &plain].map(|device| gpu::render(device, &frame(Method::Hybrid)).unwrap());
+        [&device, &plain].map(|device| gpu::render(device, &frame(Method::Refined)).unwrap());
     assert_eq!(picture(&with), picture(&without));
     assert!(without.timings.iter().all(|(_, time)| !time.is_zero()), "{:?}", without.timings);
     let mut frame = frame(Method::Vertex);
@@ -55,13 +73,22 @@ fn lowered(name: &str, lower: Lower, powers: std::ops::Range<u32>, frame: &Frame
     let Some((device, _alone)) = adapter() else { return Vec::new() };
     let whole = picture(&gpu::render(&device, frame).unwrap());
     let adapter = wgpu_adapter(&device);
+    let method = frame.settings.method;
     let mut refused = Vec::new();
     for power in powers.step_by(2) {
         let mut limits = adapter.limits();
         lower(&mut limits, 1 << power);
         let device = Device::with_limits(&adapter, limits).unwrap();
         match gpu::render(&device, frame) {
-            Ok(rendering) => assert!(picture(&rendering) == whole, "{name} 2^{power}"),
+            Ok(rendering) => {
+                let off = differing(&picture(&rendering), &whole);
+                println!("{name} 2^{power}: {off} texels differ");
+                // without room for refined triangles maps are drawn exactly, within the tolerance
+                assert!(
+                    off == 0 || method == Method::Refined && off < 40,
+                    "{name} 2^{power}: {off}"
+                );
+            }
             Err(error @ GpuError::Limit { .. }) => refused.push(error.to_string()),
             Err(other) => panic!("{name} 2^{power}: {other}"),
         }
@@ -72,7 +99,7 @@ fn lowered(name: &str, lower: Lower, powers: std::ops::Range<u32>, frame: &Frame
 
 #[test]
 fn sizes_above_a_lowered_limit_on_bytes_are_named_or_split() {
-    for ((name, lower), method) in BYTES.into_iter().zip([Method::Hybrid, Method::Cube]) {
+    for ((name, lower), method) in BYTES.into_iter().zip([Method::Refined, Method::Cube]) {
         let refused = lowered(name, lower, 8..20, &frame(method));
         if adapter().is_some() {
             assert!(!refused.is_empty(), "{name}");
@@ -88,7 +115,7 @@ fn sizes_above_a_lowered_limit_on_bytes_are_named_or_split() {
 
 #[test]
 fn maps_and_pictures_above_a_lowered_limit_on_textures_are_named() {
-    let frame = frame(Method::Hybrid);
+    let frame = frame(Method::Refined);
     let side: Lower = |limits, value| limits.max_texture_dimension_2d = value;
     let refused = lowered("max_texture_dimension_2d", side, 3..6, &frame);
     let layers: Lower = |limits, value| limits.max_texture_array_layers = value;
@@ -140,8 +167,8 @@ fn adapter_without_storage_buffers_is_refused_in_words() {
     let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
     let small = Device::with_limits(&adapter, limits).unwrap();
     for made in [
-        gpu::render(&small, &frame(Method::Hybrid)).map(drop),
-        gpu::make_maps(&small, &frame(Method::Hybrid)).map(drop),
+        gpu::render(&small, &frame(Method::Refined)).map(drop),
+        gpu::make_maps(&small, &frame(Method::Refined)).map(drop),
         small.evaluate::<_, f32>("dpsm_depth", &[[1.0_f32, 0.1, 10.0]]).map(drop),
     ] {
         let error = made.unwrap_err();

@@ -88,7 +88,7 @@ fn maps_with_loss(device: &Device, point: usize) -> Result<(), GpuError> {
             device.device.destroy();
         }
     };
-    let frame = frame(Method::Hybrid);
+    let frame = frame(Method::Refined);
     destroy_at(0);
     let mesh = MeshBuffers::new(device, &frame)?;
     destroy_at(1);
@@ -125,8 +125,8 @@ fn device_that_is_lost_stays_lost_for_all_its_uses() {
     lost(evaluator.run(&words, None).map(drop), "evaluation");
     lost(evaluator.run(&words, None).map(drop), "evaluation again");
     lost(device.evaluate::<_, f32>("dpsm_depth", &[[1.0_f32, 0.1, 10.0]]).map(drop), "evaluate");
-    lost(gpu::render(&device, &frame(Method::Hybrid)).map(drop), "render");
-    lost(gpu::make_maps(&device, &frame(Method::Hybrid)).map(drop), "make_maps");
+    lost(gpu::render(&device, &frame(Method::Refined)).map(drop), "render");
+    lost(gpu::make_maps(&device, &frame(Method::Refined)).map(drop), "make_maps");
     let maps = DepthMaps {
         size: 2,
         layers: 1,

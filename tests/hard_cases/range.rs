@@ -30,7 +30,12 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         | "dpsm_within"
         | "dpsm_caster_keep"
         | "dpsm_edge_ordered"
-        | "dpsm_edge_flat"
+        | "dpsm_refine_long"
+        | "dpsm_refine_splits"
+        | "dpsm_refine_fat"
+        | "dpsm_refine_flat"
+        | "dpsm_refine_foot"
+        | "dpsm_refine_outside"
         | "dpsm_triangle_covers"
         | "dpsm_classify_usable"
         | "dpsm_classify_misses"
@@ -60,8 +65,8 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         "dpsm_tessellate_level" => between(0, 1.0, 32768.0),
         "dpsm_edge_unit" | "dpsm_edge_normal" => unit_or_zero(result),
         "dpsm_edge_largest"
-        | "dpsm_edge_bow"
         | "dpsm_texel_solid_angle"
+        | "dpsm_refine_reach"
         | "dpsm_bias_slack"
         | "dpsm_cube_slack"
         | "dpsm_bias_plane"
@@ -70,8 +75,8 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         | "dpsm_triangle_distance"
         | "dpsm_triangle_behind"
         | "dpsm_receiver_distance"
-        | "dpsm_pcss_width"
-        | "dpsm_classify_flat_error" => positive(0),
+        | "dpsm_pcss_width" => positive(0),
+        "dpsm_classify_flat_error" => positive(0) && positive(1),
         "dpsm_triangle_plane" => unit_or_zero(&result[..3]),
         // at less than 2^-51 without a normal it is shorter
         "dpsm_receiver" => {
@@ -80,18 +85,12 @@ pub fn in_range(function: &str, result: &[f64]) -> bool {
         }
         "dpsm_bias_window" => between(0, 0.0, 2.0),
         "dpsm_texel_centre" => result.iter().all(|c| c.abs() <= 2.0),
-        "dpsm_classify" => {
-            let [kind, hemispheres] = [result[0], result[1]];
-            // none for a culled one, both for a straddling and a large one
-            match kind as u32 {
-                0 => hemispheres == 0.0,
-                1 | 3 | 5 => hemispheres == 1.0 || hemispheres == 2.0,
-                2 | 4 => hemispheres == 3.0,
-                _ => false,
-            }
-        }
-        "dpsm_classify_kind" => [0.0, 3.0, 4.0].contains(&result[0]),
-        "dpsm_classify_part" | "dpsm_classify_half" => result.chunks(3).all(unit_or_zero),
+        "dpsm_classify" => between(0, 0.0, 3.0),
+        "dpsm_refine_corners" => result.iter().all(|corner| (0.0..=5.0).contains(corner)),
+        "dpsm_refine_edge" => between(0, 0.0, 6.0),
+        "dpsm_refine_turned" => between(0, 0.0, 5.0),
+        "dpsm_part_kind" => between(0, 0.0, 2.0),
+        "dpsm_part" | "dpsm_part_half" => result.chunks(3).all(unit_or_zero),
         "dpsm_kernel" => disk(0) && between(2, 0.0, 1.0) && flag(3),
         "dpsm_kernel_disk" => positive(2),
         "dpsm_kernel_tap" | "dpsm_kernel_mirrored" | "dpsm_kernel_projected" => disk(0) && flag(2),

@@ -10,7 +10,7 @@ use glam::{Vec3, vec3};
 use crate::support::{CAMERA, built_in, device, frame, is_whole, mesh, scene_of, settings, stored};
 
 const METHODS: [Method; 5] =
-    [Method::Vertex, Method::FragmentDepth, Method::Tessellated, Method::Exact, Method::Hybrid];
+    [Method::Vertex, Method::FragmentDepth, Method::Tessellated, Method::Exact, Method::Refined];
 
 fn small(method: Method) -> Settings {
     Settings { size: 64, method, level: Level::Mesh(4), ..settings() }
@@ -86,7 +86,7 @@ fn triangles_without_area_or_seen_edge_on_store_nothing() {
     let edge_on = vec![vec3(0.2, 0.0, 1.0), vec3(0.4, 0.0, 2.0), vec3(0.8, 0.0, 1.5)];
     for corners in [vec![Vec3::X; 3], vec![Vec3::X, Vec3::Y, (Vec3::X + Vec3::Y) / 2.0], edge_on] {
         let scene = scene_of(vec![mesh(corners, vec![[0, 1, 2], [0, 0, 1], [2, 2, 2]])]);
-        for method in [Method::Exact, Method::Hybrid] {
+        for method in [Method::Exact, Method::Refined] {
             let frame = frame(&scene, Vec3::ZERO, small(method));
             assert!(maps(&frame).iter().all(|maps| stored(maps) == 0), "{method:?}");
         }
@@ -156,10 +156,10 @@ fn level_too_large_is_refused_by_adapter_and_ports() {
 }
 
 #[test]
-fn multiview_is_refused_by_the_methods_that_have_none() {
+fn multiview_is_refused_by_the_cube() {
     let scene = built_in("seam-box");
     let position = scene.default_light().position;
-    for method in [Method::Exact, Method::Hybrid, Method::Cube] {
+    for method in [Method::Cube] {
         let passes = Passes::Multiview;
         let settings = Settings { passes, ..small(method) };
         let made = Frame::new(&scene, position, Vec3::NEG_Y, false, &CAMERA, settings).unwrap_err();

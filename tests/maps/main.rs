@@ -12,6 +12,7 @@ mod meshes;
 mod ports;
 mod right;
 mod rim;
+mod room;
 mod same;
 mod support;
 mod texels;

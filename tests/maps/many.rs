@@ -33,7 +33,7 @@ fn many_chunks_make_the_maps_of_one() {
     let limited = limited((10_000 + (1 << 14)) * 224);
     let scene = scene::crowd(40_000);
     let position = scene.default_light().position;
-    for method in [Method::Exact, Method::Hybrid, Method::Vertex] {
+    for method in [Method::Exact, Method::Refined, Method::Vertex] {
         let frame = frame(&scene, position, Settings { method, ..settings() });
         let [one, many] = [&*device, &limited].map(|d| gpu::make_maps(d, &frame).unwrap());
         assert_eq!(differing(&one, &many), 0, "{method:?}");

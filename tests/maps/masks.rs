@@ -14,13 +14,13 @@ fn holes_of_the_fence_are_holes_by_every_method() {
     let scene = built_in("fence");
     let position = scene.default_light().position;
     for method in
-        [Method::Exact, Method::Hybrid, Method::Vertex, Method::FragmentDepth, Method::Tessellated]
+        [Method::Exact, Method::Refined, Method::Vertex, Method::FragmentDepth, Method::Tessellated]
     {
         let settings = Settings { method, size: 512, level: Level::Constant(64), ..settings() };
         let frame = frame(&scene, position, settings);
         let truth = truth_of(&frame);
         let adapter = device.as_ref().map(|device| gpu::make_maps(device, &frame).unwrap());
-        let port = adapter.is_none() || method == Method::Hybrid;
+        let port = adapter.is_none() || method == Method::Refined;
         let port = port.then(|| cpu::make_maps(&frame).unwrap());
         for maps in adapter.iter().chain(&port) {
             let bench = Bench::new(&frame, maps, &truth);

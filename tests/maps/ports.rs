@@ -98,7 +98,8 @@ fn apart(frame: &Frame, adapter: &DepthMaps, port: &DepthMaps) -> usize {
 fn other_maps_of_adapter_and_ports_differ_at_edges_alone() {
     let Some(device) = device() else { return };
     for name in SCENES {
-        for method in [Method::Hybrid, Method::Vertex, Method::FragmentDepth, Method::Tessellated] {
+        for method in [Method::Refined, Method::Vertex, Method::FragmentDepth, Method::Tessellated]
+        {
             let level = Level::Mesh(4);
             let frame = turned(name, Settings { method, level, ..settings() });
             let adapter = gpu::make_maps(&device, &frame).unwrap();

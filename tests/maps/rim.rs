@@ -37,7 +37,7 @@ fn stored_disk_is_full_up_to_its_border_and_empty_beyond() {
         for size in [64, 256, 333] {
             let position = scene.default_light().position + vec3(0.03, -0.05, 0.02);
             let mut light = None;
-            for method in [Method::Exact, Method::Hybrid, Method::Vertex] {
+            for method in [Method::Exact, Method::Refined, Method::Vertex] {
                 let mut frame = frame(&scene, position, Settings { size, method, ..settings() });
                 frame.light = *light.get_or_insert_with(|| {
                     turn(&mut frame.light, &mut rng);
@@ -49,6 +49,8 @@ fn stored_disk_is_full_up_to_its_border_and_empty_beyond() {
                     let wrong = misplaced(&frame, maps);
                     match method {
                         Method::Vertex => by_vertex += wrong[0] + wrong[1],
+                        // what is beyond the border is never read: refined maps leave it as it falls
+                        Method::Refined => assert_eq!(wrong[0], 0, "{} {size}", scene.name),
                         _ => assert_eq!(wrong, [0; 2], "{} {size} {method:?}", scene.name),
                     }
                 }

@@ -9,7 +9,7 @@ use dpsm::scene::Scene;
 use crate::common::rng;
 use crate::support::{Adapter, built_in, device, differing, frame, place, settings, stored, turn};
 
-const METHODS: [Method; 3] = [Method::Vertex, Method::Exact, Method::Hybrid];
+const METHODS: [Method; 3] = [Method::Vertex, Method::Exact, Method::Refined];
 
 fn make(scene: &Scene, settings: Settings) -> Frame {
     let mut rng = rng("same");
@@ -39,8 +39,10 @@ fn maps_side_by_side_are_those_one_by_one() {
     }
 }
 
-/// The methods that draw all triangles into each map.
-const MULTIVIEW: [Method; 3] = [Method::Vertex, Method::FragmentDepth, Method::Tessellated];
+/// The methods of paraboloid maps: those that draw all triangles into each map, and those that draw
+/// a list for each.
+const MULTIVIEW: [Method; 5] =
+    [Method::Vertex, Method::FragmentDepth, Method::Tessellated, Method::Exact, Method::Refined];
 
 /// The adapter, if it has multiview and no fault of it that is known; else a line says why not.
 fn multiview() -> Option<Adapter> {
@@ -123,7 +125,7 @@ fn layers(device: &Device, frame: &Frame, lights: &[DpsmLight<f32>], twice: bool
 fn many_lights_have_the_maps_of_each_alone_and_kept_lists_draw_them_again() {
     let Some(device) = device() else { return };
     let scene = built_in("seam-box");
-    for (method, count) in [(Method::Hybrid, 64), (Method::Exact, 4), (Method::Vertex, 4)] {
+    for (method, count) in [(Method::Refined, 64), (Method::Exact, 4), (Method::Vertex, 4)] {
         let mut frame = make(&scene, Settings { method, size: 64, ..settings() });
         let mut rng = rng("lights");
         let lights: Vec<_> = (0..count)

@@ -26,8 +26,8 @@ pub struct Texels {
     pub at: String,
     /// Of those where the bound is below 1e-5, the largest error.
     pub conditioned: f64,
-    /// Texels at creases off by more than 0.1% but within the bound there.
-    pub creases: usize,
+    /// Texels off by more than 0.1% but within the bound there.
+    pub within: usize,
 }
 
 /// The disk coordinates of a texel's centre.
@@ -72,7 +72,7 @@ fn bound(bench: &Bench<'_>, direction: DVec3, hit: &Hit) -> (f64, f64) {
 
 /// The bound of one texel, and that of one at a crease; `around` are the hits there.
 ///
-/// A flat triangle's depth is off by the method's depth tolerance, and by what rasterizers move
+/// An interpolated depth is off by the method's depth tolerance, and by tau and what rasterizers move
 /// vertices, a step in x and y at most, times the slope; an edge by tau and its rounding, where
 /// either side's plane may be seen: the slopes of both.
 fn bounds(bench: &Bench<'_>, uv: Vec2<f64>, layer: u32, around: &[Option<Hit>]) -> (f64, f64) {
@@ -81,7 +81,7 @@ fn bounds(bench: &Bench<'_>, uv: Vec2<f64>, layer: u32, around: &[Option<Hit>]) 
     let (tangent, own) = bound(bench, direction, around[4].as_ref().unwrap());
     let angle = 2.0 / (1.0 + uv.dot(uv));
     let snapped = match tau > 0.0 {
-        true => depth_tolerance + DPSM_EDGE_SNAP * bench.texel() * angle * tangent,
+        true => depth_tolerance + (tau + DPSM_EDGE_SNAP) * bench.texel() * angle * tangent,
         false => 0.0,
     };
     let steepest = around.iter().flatten().map(|hit| {
@@ -120,10 +120,11 @@ pub fn compare(bench: &Bench<'_>, hits: &[Option<Hit>]) -> Texels {
         }
         let (calm, crease) = bounds(bench, uv, layer, &around);
         if !is_calm {
-            texels.creases += usize::from(error <= crease);
+            texels.within += usize::from(error <= crease);
             continue;
         }
         texels.calm += 1;
+        texels.within += usize::from(error > WRONG && error <= calm);
         texels.largest = texels.largest.max(error);
         if calm <= 1e-5 {
             texels.conditioned = texels.conditioned.max(error);

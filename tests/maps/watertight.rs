@@ -32,7 +32,7 @@ fn check(mesh: Mesh, rotations: u32, ports: bool, size: u32) {
     let mut rng = rng("watertight");
     for rotation in 0..rotations {
         let mut light = None;
-        for method in [Method::Exact, Method::Hybrid] {
+        for method in [Method::Exact, Method::Refined] {
             let mut frame = frame(&scene, Vec3::ZERO, Settings { size, method, ..settings() });
             frame.light = *light.get_or_insert_with(|| {
                 turn(&mut frame.light, &mut rng);

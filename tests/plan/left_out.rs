@@ -47,7 +47,7 @@ fn no_ray_to_a_receiver_meets_what_is_left_out() {
             let points = Bench::new(&frame, &empty, &truth).points_from_camera(2_000, rng.u64(..));
             // only what is left out, at the places of the whole frame's triangles
             let casting = left_out.iter().map(|reason| match reason {
-                Some(_) => Casting::By(Method::Hybrid),
+                Some(_) => Casting::By(Method::Refined),
                 None => Casting::Unseen,
             });
             let alone = Settings { casting: casting.collect(), ..Settings::default() };

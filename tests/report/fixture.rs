@@ -18,7 +18,7 @@ const METHODS: [(&str, f64, f64, u32); 6] = [
     ("fragment-depth", 6.3, 0.0118, 2),
     ("tessellated", 9.8, 0.0084, 2),
     ("exact", 21.0, 0.0071, 2),
-    ("hybrid", 7.2, 0.0071, 2),
+    ("refined", 7.2, 0.0071, 2),
     ("cube", 8.9, 0.0075, 6),
 ];
 
@@ -29,7 +29,7 @@ fn variant(method: usize, size: u32, filter: usize) -> Variant {
     let scale = f64::from(size) / 512.0;
     let role = match (name, size, filter) {
         ("cube", ..) => Role::Cube,
-        ("hybrid", 1024, "hardware") => Role::Plan,
+        ("refined", 1024, "hardware") => Role::Plan,
         _ => Role::Other,
     };
     let side = if maps == 6 { size / 2 } else { size };
@@ -83,13 +83,13 @@ fn scene(name: &str) -> SceneFigures {
         seed: 1,
         variants: all.collect(),
         plan: vec![
-            "method: hybrid, since the walls' edges would bow by 3.1 texels > 0.5".to_string(),
+            "method: refined, since the walls' edges would bow by 3.1 texels > 0.5".to_string(),
             "size: 1024, since 0.35 degrees are asked for & 512 has 0.45".to_string(),
         ],
         sources: ["f32 arithmetic", "storage format", "resolution", "bias", "filter"]
             .map(|name| Source {
                 name: name.to_string(),
-                variant: "hybrid 1024 hardware".to_string(),
+                variant: "refined 1024 hardware".to_string(),
                 measured: 0.000_012_5 * name.len() as f64,
                 predicted: (name != "filter").then_some(0.000_31),
                 unit: "world units".to_string(),
@@ -120,7 +120,11 @@ pub fn report() -> Report {
         title: title.to_string(),
         axis: axis.to_string(),
         unit: unit.to_string(),
-        curves: vec![curve("vertex", 0.9, 3.0), curve("hybrid", 0.8, 4.0), curve("cube", 1.0, 6.0)],
+        curves: vec![
+            curve("vertex", 0.9, 3.0),
+            curve("refined", 0.8, 4.0),
+            curve("cube", 1.0, 6.0),
+        ],
     };
     Report {
         version: VERSION,
@@ -170,7 +174,7 @@ pub fn images() -> Vec<Image> {
         image("brabec-room", "lit", "brabec-room", "The lit image"),
         image("brabec-room", "maps", "brabec-room-maps", "Both maps"),
         image("brabec-room", "view", "brabec-room-view", "A hemisphere's view"),
-        image(HARD_NAME, "lit", "method-hybrid", "Title <with> \"quotes\" & 'more'"),
+        image(HARD_NAME, "lit", "method-refined", "Title <with> \"quotes\" & 'more'"),
         image(HARD_NAME, "Lit!", "method-vertex", "The same id but for its sign"),
         image("no such scene", "lit", "method-vertex", "left out"),
     ]

@@ -49,7 +49,7 @@ fn needles_end_at_their_tips() {
         // of nearly no width: rounding alone decides where its lines meet
         let c = nearby(&mut rng, a + (b - a) * 0.75, -24, -16);
         let light = sized(&mut rng);
-        let t = dpsm_triangle(a, b, c, light, 0.125);
+        let t = dpsm_triangle(a, b, c, light);
         let (tip, end) = (dpsm_project(a.widen()), dpsm_project(b.widen()));
         let texel = f64::from(dpsm_texel_width(light.size, light.guard));
         // beyond the margin, and the rounding that the span has more, twice
@@ -81,13 +81,13 @@ fn what_rounding_covers_is_behind_the_neighbour() {
         let [a, b, c, d] = corners.map(Vec3::widen);
         let light = sized(&mut rng).widen();
         // in f64, where the planes are exact beside what DPSM_EDGE_ROUNDING allows
-        let t = dpsm_triangle(a, b, c, light, 0.0);
-        let neighbour = dpsm_triangle(b, a, d, light, 0.0);
+        let t = dpsm_triangle(a, b, c, light);
+        let neighbour = dpsm_triangle(b, a, d, light);
         let along = a + (b - a) * rng.f64();
         let aside = unit(&mut rng).widen() * (along.length() * 32.0 * EPS);
         let uv = dpsm_project(along + aside);
         // outside of the shared edge, not of one that ends the triangle in front of all
-        let shared = dpsm_edge_line(b, a, light, 0.0).dot(dpsm_edge_terms(uv));
+        let shared = dpsm_edge_line(b, a).dot(dpsm_edge_terms(uv));
         let rounds = dpsm_triangle_covers(t, uv) && dpsm_triangle_inside(t, uv) < 0.0;
         let is_outside = shared > 0.0 && dpsm_triangle_inside(t, uv) >= -shared - 1e-14;
         if !rounds || !is_outside || uv.length() > 1.0 || dpsm_triangle_inside(neighbour, uv) < 0.0
@@ -95,8 +95,8 @@ fn what_rounding_covers_is_behind_the_neighbour() {
             continue;
         }
         rounded += 1;
-        let there = dpsm_triangle_distance(neighbour, uv);
-        let l = dpsm_triangle_distance(t, uv);
+        let there = dpsm_triangle_distance(neighbour.face, uv);
+        let l = dpsm_triangle_distance(t.face, uv);
         // as far as the neighbour's own plane changes over as much
         let normal = (b - a).cross(d - a);
         let cosine = (normal.dot(a) / (normal.length() * a.length())).abs();

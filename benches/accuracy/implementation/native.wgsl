@@ -449,26 +449,6 @@ fn dpsm_edge_sagitta(normal_z: f32, chord: vec2<f32>) -> f32 {
     return quarter * normal_z / (1.0 + sqrt(max(1.0 - square, 0.0)));
 }
 
-/// How far from an edge's arc its chord may be drawn, in disk units: the sagitta in the map of
-/// the ends, and the rasterizer's snapping. The same in both maps, and when turned.
-///
-/// Domain: as for dpsm_edge_normal. Bound: 14 eps absolute for chords up to 1.
-fn dpsm_edge_bow(a: vec3<f32>, b: vec3<f32>, light: DpsmLight) -> f32 {
-    let chord = dpsm_project_own(b) - dpsm_project_own(a);
-    let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
-    return snap + abs(dpsm_edge_sagitta(dpsm_edge_normal(a, b).z, chord));
-}
-
-/// True where an edge may be drawn as its chord: dpsm_edge_bow is at most 15/16 of tau texels, and
-/// both ends are on one side of the seam. It depends on nothing else, and is the same in both maps,
-/// so the triangles that share the edge agree.
-///
-/// Domain: as for dpsm_edge_normal. A decision: exact but for edges within its bounds of tau.
-fn dpsm_edge_flat(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> bool {
-    let limit = 0.9375 * tau * dpsm_texel_width(light.size, light.guard);
-    return dpsm_edge_bow(a, b, light) <= limit && a.z * b.z >= 0.0;
-}
-
 /// The terms that a line weighs: (2u, 2v, 1 - r^2, 1).
 ///
 /// Domain: r <= 2^62. Bound: 3 eps (1 + r^2) absolute.
@@ -476,31 +456,14 @@ fn dpsm_edge_terms(uv: vec2<f32>) -> vec4<f32> {
     return vec4<f32>(uv + uv, 1.0 - dot(uv, uv), 1.0);
 }
 
-/// The line of an edge: its arc, and where dpsm_edge_flat holds moved to the right by what may lie
-/// between it and its chord, at most tau texels, behind the seam 4 tau, so that no hole is left
-/// beside a triangle that is drawn with chords. Everything is on the right of it for ends in one
-/// direction, as their triangle covers nothing. An arc that is not moved is exactly negated when
-/// turned.
+/// The line of an edge: its arc. Everything is on the right of it for ends in one direction, as
+/// their triangle covers nothing. Exactly negated when turned.
 ///
-/// Domain: as for dpsm_edge_normal; tau texels at most 1/8 of the disk. Bound: rounding moves it
-/// by at most DPSM_EDGE_ROUNDING, for ends up to 155 degrees apart. Behind the seam chords are
-/// within 4 tau of their arcs for ends up to r = 4/3; farther ones may leave holes of the rest.
-fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>, light: DpsmLight, tau: f32) -> vec4<f32> {
+/// Domain: as for dpsm_edge_normal. Bound: rounding moves it by at most DPSM_EDGE_ROUNDING, for ends
+/// up to 155 degrees apart.
+fn dpsm_edge_line(a: vec3<f32>, b: vec3<f32>) -> vec4<f32> {
     let normal = dpsm_edge_normal(a, b);
-    if !(dot(normal, normal) > 0.0) {
-        return vec4<f32>(0.0, 0.0, 0.0, -1.0);
-    }
-    if !dpsm_edge_flat(a, b, light, tau) {
-        return vec4<f32>(0.5 * normal, 0.0);
-    }
-    // the arc bows to the right of its chord, or not at all: but for snapping the chord is inside
-    if normal.z >= 0.0 {
-        let snap = DPSM_EDGE_SNAP * dpsm_texel_width(light.size, light.guard);
-        return vec4<f32>(0.5 * normal, snap);
-    }
-    // 16/15 for the second order; behind the seam this map's sagitta is up to 4 times as large
-    let most = select(16.0 / 15.0, 64.0 / 15.0, a.z + b.z < 0.0);
-    return vec4<f32>(0.5 * normal, most * dpsm_edge_bow(a, b, light));
+    return vec4<f32>(0.5 * normal, select(-1.0, 0.0, dot(normal, normal) > 0.0));
 }
 
 // dpsm::triangle
@@ -513,8 +476,8 @@ struct DpsmTriangle {
     second: vec4<f32>,
     /// Edge from the third to the first.
     third: vec4<f32>,
-    /// Normal times largest distance over height, and the largest distance of a vertex.
-    plane: vec4<f32>,
+    /// Its plane (dpsm_triangle_face).
+    face: vec4<f32>,
     /// Its extent along its longest chord (dpsm_triangle_span).
     span: vec3<f32>,
 }
@@ -562,36 +525,40 @@ fn dpsm_triangle_plane(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(unit, dot(unit, nearest));
 }
 
+/// A triangle's plane as its fragments need it: the normal, turned away from the light, times the
+/// largest distance of a vertex over the height, and that distance.
+///
+/// plane: what dpsm_triangle_plane gives; farthest: the largest distance of a vertex.
+/// Domain: farthest in [2^-50, 2^63]. Bound: 4 eps relative; a height below 2^-60 of the largest
+/// distance counts as that.
+fn dpsm_triangle_face(plane: vec4<f32>, farthest: f32) -> vec4<f32> {
+    // 2^-120: below every share within the domain; all vertices may be at the light
+    let height = max(max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT), 0x1p-120);
+    let outward = select(plane.xyz, -plane.xyz, vec3<bool>(plane.w < 0.0));
+    return vec4<f32>(outward * (farthest / height), farthest);
+}
+
 /// Prepares a triangle for its fragments.
 ///
 /// Domain: as for dpsm_triangle_plane. Bound: see dpsm_triangle_distance.
-fn dpsm_triangle(
-    a: vec3<f32>,
-    b: vec3<f32>,
-    c: vec3<f32>,
-    light: DpsmLight,
-    tau: f32,
-) -> DpsmTriangle {
+fn dpsm_triangle(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmTriangle {
     let plane = dpsm_triangle_plane(a, b, c);
     let turned = plane.w < 0.0;
     let second = select(b, c, vec3<bool>(turned));
     let third = select(c, b, vec3<bool>(turned));
     let farthest = max(max(length(a), length(b)), length(c));
-    // 2^-120: below every share within the domain; all vertices may be at the light
-    let height = max(max(abs(plane.w), farthest * DPSM_TRIANGLE_HEIGHT), 0x1p-120);
-    let outward = select(plane.xyz, -plane.xyz, vec3<bool>(turned));
     return DpsmTriangle(
-        dpsm_edge_line(a, second, light, tau),
-        dpsm_edge_line(second, third, light, tau),
-        dpsm_edge_line(third, a, light, tau),
-        vec4<f32>(outward * (farthest / height), farthest),
+        dpsm_edge_line(a, second),
+        dpsm_edge_line(second, third),
+        dpsm_edge_line(third, a),
+        dpsm_triangle_face(plane, farthest),
         dpsm_triangle_span(a, b, c, light),
     );
 }
 
 /// The extent of a triangle along its longest chord: a disk point is between the ends where
-/// |dot(span, (u, v, 1))| <= 1. At acute corners it ends what lines that are moved or rounded
-/// would reach beyond them. All of a triangle's arcs are within (docs/triangle.md).
+/// |dot(span, (u, v, 1))| <= 1. At acute corners it ends what rounded lines would reach
+/// beyond them. All of a triangle's arcs are within (docs/triangle.md).
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: zero, so every point is within; its
 /// parts have spans of their own. Domain: as for dpsm_triangle_plane. Bound: DPSM_EDGE_ROUNDING on
@@ -653,15 +620,16 @@ fn dpsm_triangle_covers(triangle: DpsmTriangle, uv: vec2<f32>) -> bool {
     return inside && abs(dot(triangle.span, vec3<f32>(uv, 1.0))) <= 1.0;
 }
 
-/// Radial distance of the triangle's plane in the direction of uv, at most that of its farthest
+/// Radial distance of a triangle's plane in the direction of uv, at most that of its farthest
 /// vertex.
 ///
-/// Domain: r <= 4, inside the triangle. Bound: (24 farthest / sin + 16 l) eps / cos absolute, sin
-/// as for dpsm_triangle_plane, cos that of the angle of incidence.
-fn dpsm_triangle_distance(triangle: DpsmTriangle, uv: vec2<f32>) -> f32 {
+/// face: what dpsm_triangle_face gives. Domain: r <= 4, inside the triangle. Bound:
+/// (24 farthest / sin + 16 l) eps / cos absolute, sin as for dpsm_triangle_plane, cos that of the
+/// angle of incidence.
+fn dpsm_triangle_distance(face: vec4<f32>, uv: vec2<f32>) -> f32 {
     let terms = dpsm_edge_terms(uv);
     let whole = 1.0 + dot(uv, uv);
-    return triangle.plane.w * whole / max(dot(triangle.plane.xyz, terms.xyz), whole);
+    return face.w * whole / max(dot(face.xyz, terms.xyz), whole);
 }
 
 /// The disk coordinates of a fragment's position in a map whose middle is at `middle` texels:
@@ -679,9 +647,9 @@ fn dpsm_triangle_disk(position: vec2<f32>, middle: vec2<f32>, texel: f32) -> vec
 /// Domain: l from dpsm_triangle_distance. Bound: for the plane given, 12 eps relative where cos,
 /// that of the incidence, is above 2^-14.
 fn dpsm_triangle_behind(triangle: DpsmTriangle, l: f32) -> f32 {
-    let steepness = l * length(triangle.plane.xyz) / max(triangle.plane.w, DPSM_EDGE_NEAREST);
+    let steepness = l * length(triangle.face.xyz) / max(triangle.face.w, DPSM_EDGE_NEAREST);
     let share = max(1.0 - 2.0 * DPSM_EDGE_ROUNDING * steepness, DPSM_EDGE_NEAREST);
-    return min(l / share, triangle.plane.w);
+    return min(l / share, triangle.face.w);
 }
 
 /// The fragment of a prepared triangle at uv: its depth, and whether it is kept: inside the
@@ -694,7 +662,7 @@ fn dpsm_triangle_fragment(
     light: DpsmLight,
     bias: f32,
 ) -> DpsmCasterFragment {
-    var l = dpsm_triangle_distance(triangle, uv);
+    var l = dpsm_triangle_distance(triangle.face, uv);
     if dpsm_triangle_inside(triangle, uv) < 0.0 {
         l = dpsm_triangle_behind(triangle, l);
     }
@@ -743,8 +711,8 @@ struct DpsmHull {
 /// tips: a right triangle around the rectangle along its longest chord.
 ///
 /// Of a large triangle, with a chord above DPSM_TRIANGLE_CHORD: a triangle around the whole map.
-/// Domain: as for dpsm_triangle_plane. It holds every point of the
-/// triangle, and of what its lines are moved by all that a chord beside it leaves open.
+/// Domain: as for dpsm_triangle_plane. It holds every point of the triangle, and what rounding moves
+/// its lines by.
 fn dpsm_triangle_hull(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, light: DpsmLight) -> DpsmHull {
     let disk_a = dpsm_project(a);
     let disk_b = dpsm_project(b);
@@ -832,14 +800,15 @@ fn dpsm_triangle_needle(
 
 // dpsm::classify
 
-/// Not drawn: outside the clipping spheres, without area, not finite, or between texel centres.
-const DPSM_CULLED: u32 = 0u;
-
-/// By its hull, with module triangle in the fragment stage.
-const DPSM_CURVED: u32 = 3u;
-
-/// As a curved one, but by the hulls of its parts (dpsm_classify_part).
-const DPSM_LARGE: u32 = 4u;
+/// A vertex as a map sees it.
+struct DpsmProjected {
+    /// Light space, flipped for the map.
+    p: vec3<f32>,
+    /// Its distance from the light.
+    distance: f32,
+    /// Its disk coordinates.
+    uv: vec2<f32>,
+}
 
 /// Smallest facing of a plane that is told from edge-on.
 const DPSM_CLASSIFY_FACING: f32 = 0x1p-60;
@@ -847,21 +816,27 @@ const DPSM_CLASSIFY_FACING: f32 = 0x1p-60;
 /// Largest spread of distances: its cube is finite, and an error of it is beyond all tolerance.
 const DPSM_CLASSIFY_SPREAD: f32 = 0x1p40;
 
-/// Largest relative error of a plane's distance when it is interpolated between three disk points:
-/// the errors at the middles of the chords, half as much again for the inside, and for what is not
-/// seen at the middles a quarter of s (c^2 + s^2), c the longest chord and s how much farther the
-/// farthest point is than the nearest.
+/// A vertex as a map sees it, from its position in light space, flipped for the map.
+///
+/// Domain and bound: as for dpsm_project; the distance 6 eps relative.
+fn dpsm_projected(p: vec3<f32>) -> DpsmProjected {
+    return DpsmProjected(p, length(p), dpsm_project(p));
+}
+
+/// Largest relative errors of a plane's distance when it is interpolated between three disk points:
+/// how much too near, and how much too far. Each is the error of that sign at the middles of the
+/// chords, half as much again for the inside, and for what is not seen at the middles a quarter of
+/// s (c^2 + s^2), c the longest chord and s how much farther the farthest point is than the nearest.
 ///
 /// hull: the points; distances: the plane's at each; plane: (unit normal, height).
 /// Domain: chords up to DPSM_TRIANGLE_CHORD, distances 0 or in [2^-50, 2^63], none below the
-/// height. An upper bound for errors up to 1/10 (docs/classify.md); large, but finite, where the
+/// height. Upper bounds for errors up to 1/10 (docs/classify.md); large, but finite, where the
 /// plane is seen edge-on.
-fn dpsm_classify_flat_error(hull: DpsmHull, distances: vec3<f32>, plane: vec4<f32>) -> f32 {
+fn dpsm_classify_flat_error(hull: DpsmHull, distances: vec3<f32>, plane: vec4<f32>) -> vec2<f32> {
     let ab = dpsm_classify_distance(plane, 0.5 * (hull.a + hull.b));
     let bc = dpsm_classify_distance(plane, 0.5 * (hull.b + hull.c));
     let ca = dpsm_classify_distance(plane, 0.5 * (hull.c + hull.a));
-    let middles = 0.5 * (distances + distances.yzx);
-    let errors = abs(middles - vec3<f32>(ab, bc, ca));
+    let errors = 0.5 * (distances + distances.yzx) - vec3<f32>(ab, bc, ca);
     let nearest = min(min(distances.x, distances.y), distances.z);
     let farther = max(max(distances.x, distances.y), distances.z) - nearest;
     let unit = max(nearest, DPSM_SMALLEST);
@@ -872,7 +847,9 @@ fn dpsm_classify_flat_error(hull: DpsmHull, distances: vec3<f32>, plane: vec4<f3
         dot(hull.a - hull.c, hull.a - hull.c),
     );
     let unseen = 0.25 * spread * (max(max(sides.x, sides.y), sides.z) + spread * spread);
-    return 1.5 * max(max(errors.x, errors.y), errors.z) / unit + unseen;
+    let low = min(min(errors.x, errors.y), errors.z);
+    let high = max(max(errors.x, errors.y), errors.z);
+    return 1.5 * max(vec2<f32>(-low, high), vec2<f32>()) / unit + unseen;
 }
 
 /// The distance of a plane (unit normal, height) in the direction of uv, from either side; below 0
@@ -885,6 +862,258 @@ fn dpsm_classify_distance(plane: vec4<f32>, uv: vec2<f32>) -> f32 {
     let seen = select(facing, DPSM_CLASSIFY_FACING, abs(facing) < DPSM_CLASSIFY_FACING);
     return plane.w * (1.0 + dot(uv, uv)) / seen;
 }
+
+// dpsm::refine
+
+/// The edge from a triangle's first corner to its second, split; bits of a mask. See
+/// DPSM_REFINE_SECOND and DPSM_REFINE_THIRD.
+const DPSM_REFINE_FIRST: u32 = 1u;
+
+/// The edge from the second corner to the third.
+const DPSM_REFINE_SECOND: u32 = 2u;
+
+/// The edge from the third corner to the first.
+const DPSM_REFINE_THIRD: u32 = 4u;
+
+/// What dpsm_refine_edge gives for an edge inside the triangle.
+const DPSM_REFINE_INNER: u32 = 6u;
+
+/// Height of a plane, as a share of the nearest corner's distance, below which its foot is split at.
+const DPSM_REFINE_FLUSH: f32 = 0.25;
+
+/// How much of the tolerance of distances what is drawn may be too near: all that a receiver's bias
+/// must allow.
+const DPSM_REFINE_NEARER: f32 = 0.125;
+
+/// Most that a slope adds to the tolerance of distances: what dpsm_classify_flat_error bounds ends at
+/// a tenth.
+const DPSM_REFINE_SLOPE: f32 = 0x1p-5;
+
+/// Where an edge is split: where the bisector of the angle between its ends meets it. The same bits
+/// for swapped ends.
+///
+/// Domain: |a|, |b| in [2^-50, 2^62]. Bound: 28 eps of the nearer end's
+/// distance, absolute, each component.
+fn dpsm_refine_point(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let ordered = dpsm_edge_ordered(a, b);
+    let first = select(b, a, vec3<bool>(ordered));
+    let second = select(a, b, vec3<bool>(ordered));
+    let nearer = length(first);
+    let share = nearer / max(nearer + length(second), DPSM_EDGE_NEAREST);
+    return first + (second - first) * share;
+}
+
+/// How far from its arc an edge may be drawn for a tau in texels, in disk units: 15/16 of tau less
+/// what a rasterizer's snapping moves it.
+///
+/// Domain: size >= 1, 0 <= guard <= 1, 0 <= tau <= 2^16. Bound: 6.5 eps tau texel widths absolute.
+fn dpsm_refine_reach(light: DpsmLight, tau: f32) -> f32 {
+    let texel = dpsm_texel_width(light.size, light.guard);
+    return max(0.9375 * tau - DPSM_EDGE_SNAP, 0.0) * texel;
+}
+
+/// True where a chord is so long that its edge is split in any case.
+///
+/// Domain: any disk points. A decision: exact but for chords within 3 eps of DPSM_TRIANGLE_CHORD.
+fn dpsm_refine_long(a: vec2<f32>, b: vec2<f32>) -> bool {
+    let chord = b - a;
+    return dot(chord, chord) > DPSM_TRIANGLE_CHORD * DPSM_TRIANGLE_CHORD;
+}
+
+/// True where an edge must be split: its chord is long, or its arc lies more than `reach` from it.
+/// The same for swapped ends.
+///
+/// reach: what dpsm_refine_reach gives. Domain: as for dpsm_project. A decision: exact but for
+/// edges within 24 eps of the limit inside the rim, 40 r + 2 (1 + r^2) eps beyond.
+fn dpsm_refine_splits(start: DpsmProjected, end: DpsmProjected, reach: f32) -> bool {
+    if dpsm_refine_long(start.uv, end.uv) {
+        return true;
+    }
+    let chord = end.uv - start.uv;
+    let square = dot(chord, chord);
+    // no arc lies farther from its chord than c^2 / 4
+    if 0.25 * square <= reach {
+        return false;
+    }
+    let middle = dpsm_project(dpsm_refine_point(start.p, end.p));
+    let arm = middle - select(end.uv, start.uv, vec2<bool>(dpsm_edge_ordered(start.p, end.p)));
+    return abs(arm.x * chord.y - arm.y * chord.x) > reach * sqrt(square);
+}
+
+/// Corners of a part of a triangle whose edges in `split` are split: 0 to 2 are the triangle's
+/// own, 3 to 5 the points that split its first, second and third edge. There is a part more than
+/// edges that are split. Where two are, `crossed` chooses the other diagonal of what is left.
+///
+/// Domain: split 1 to 7, part up to the number of split edges; others give some corners. Exact.
+fn dpsm_refine_corners(split: u32, part: u32, crossed: bool) -> vec3<u32> {
+    // turned so that the first edge is split, and of two the second
+    var turn = 0u;
+    if split == DPSM_REFINE_SECOND || split == (DPSM_REFINE_SECOND | DPSM_REFINE_THIRD) {
+        turn = 1u;
+    } else if split == DPSM_REFINE_THIRD || split == (DPSM_REFINE_THIRD | DPSM_REFINE_FIRST) {
+        turn = 2u;
+    }
+    let count = (split & 1u) + ((split >> 1u) & 1u) + ((split >> 2u) & 1u);
+    var corners = vec3<u32>(3u, 4u, 5u);
+    if count == 1u {
+        corners = select(vec3<u32>(3u, 1u, 2u), vec3<u32>(0u, 3u, 2u), vec3<bool>(part == 0u));
+    } else if part == 1u && count == 2u {
+        corners = select(vec3<u32>(0u, 3u, 4u), vec3<u32>(0u, 3u, 2u), vec3<bool>(crossed));
+    } else if part > 1u && count == 2u {
+        corners = select(vec3<u32>(0u, 4u, 2u), vec3<u32>(3u, 4u, 2u), vec3<bool>(crossed));
+    } else if part == 0u && count > 2u {
+        corners = vec3<u32>(0u, 3u, 5u);
+    } else if part < 2u {
+        corners = vec3<u32>(3u, 1u, 4u);
+    } else if part == 2u {
+        corners = vec3<u32>(5u, 4u, 2u);
+    }
+    return vec3<u32>(
+        dpsm_refine_turned(corners.x, turn),
+        dpsm_refine_turned(corners.y, turn),
+        dpsm_refine_turned(corners.z, turn),
+    );
+}
+
+/// A corner as dpsm_refine_corners gives it, of a triangle whose corners are counted from `turn` on.
+///
+/// Domain: 0 to 5, turn 0 to 2. Exact.
+fn dpsm_refine_turned(corner: u32, turn: u32) -> u32 {
+    return (corner + turn) % 3u + select(0u, 3u, corner >= 3u);
+}
+
+/// What the edge between two corners as dpsm_refine_corners gives them is: 0 to 2, that whole edge
+/// of the triangle; 3 to 5, a half of its first, second or third edge; DPSM_REFINE_INNER.
+///
+/// Domain: 0 to 5, two different ones; others give a number up to 6. Exact.
+fn dpsm_refine_edge(a: u32, b: u32) -> u32 {
+    let low = min(a, b);
+    let high = max(a, b);
+    if high < 3u {
+        return select(low, 2u, low == 0u && high == 2u);
+    }
+    let edge = min(high - 3u, 2u);
+    let ends = low == edge || low == (edge + 1u) % 3u;
+    return select(DPSM_REFINE_INNER, 3u + edge, ends);
+}
+
+/// True where the edges that a part of a triangle has inside it may be drawn as chords: they leave
+/// the halves of the triangle's own edges at angles that are twice what an arc can turn from its
+/// chord. With the corners' unit vectors, their volume is at least H I min(H, 1/4), H the longest
+/// half and I the longest of the other sides, and no side spans more than 128 degrees. Where it does
+/// not hold, as in needles, they must follow their arcs too.
+///
+/// halves: a mask of the part's edges that are halves of the triangle's own. Domain: as for
+/// dpsm_project. A decision: exact but for sides below 2^-10, which are not split, and 12 eps of the
+/// others.
+fn dpsm_refine_fat(
+    first: DpsmProjected,
+    second: DpsmProjected,
+    third: DpsmProjected,
+    halves: u32,
+) -> bool {
+    let a = first.p / max(first.distance, DPSM_EDGE_NEAREST);
+    let b = second.p / max(second.distance, DPSM_EDGE_NEAREST);
+    let c = third.p / max(third.distance, DPSM_EDGE_NEAREST);
+    let ab = b - a;
+    let bc = c - b;
+    let ca = a - c;
+    let squares = vec3<f32>(dot(ab, ab), dot(bc, bc), dot(ca, ca));
+    let own = vec3<f32>(
+        select(0.0, squares.x, (halves & DPSM_REFINE_FIRST) != 0u),
+        select(0.0, squares.y, (halves & DPSM_REFINE_SECOND) != 0u),
+        select(0.0, squares.z, (halves & DPSM_REFINE_THIRD) != 0u),
+    );
+    let others = squares - own;
+    let half = sqrt(max(max(own.x, own.y), own.z));
+    let inner = sqrt(max(max(others.x, others.y), others.z));
+    // with unit vectors, the sine of a corner's angle on the sphere times those of its sides
+    let area = abs(dot(a, cross(ab, ca)));
+    let short = max(max(squares.x, squares.y), squares.z) <= 3.25;
+    return short && area >= half * inner * min(half, DPSM_TRIANGLE_CHORD);
+}
+
+/// True where a triangle whose plane passes close to the light has the light's foot inside: it is
+/// first split there into three, as parts around the foot would span a third of a circle however
+/// often they were halved.
+///
+/// plane: (unit normal, height), what dpsm_triangle_plane gives. Domain: |a|, |b|, |c| in
+/// [2^-50, 2^62]. A decision: exact but for rounding of 40 eps where the foot is at an edge; either
+/// answer is right.
+fn dpsm_refine_foot(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, plane: vec4<f32>) -> bool {
+    let nearest = min(min(length(a), length(b)), length(c));
+    if !(abs(plane.w) < DPSM_REFINE_FLUSH * nearest) {
+        return false;
+    }
+    let foot = plane.xyz * plane.w;
+    let sides = vec3<f32>(
+        dot(plane.xyz, cross(b - a, foot - a)),
+        dot(plane.xyz, cross(c - b, foot - b)),
+        dot(plane.xyz, cross(a - c, foot - c)),
+    );
+    return min(min(sides.x, sides.y), sides.z) > 0.0;
+}
+
+/// True where nothing of a triangle of these disk corners, and of what it is refined to, can be
+/// drawn in the stored disk or the texel around it: the corners lie beyond both by 1/64, which is
+/// more than a chord of DPSM_TRIANGLE_CHORD comes back.
+///
+/// Domain: any disk points. On the safe side.
+fn dpsm_refine_outside(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, light: DpsmLight) -> bool {
+    let border = 1.0 + light.guard + dpsm_texel_width(light.size, light.guard) + 0x1p-6;
+    return min(min(dot(a, a), dot(b, b)), dot(c, c)) > border * border;
+}
+
+/// True where the distances of a triangle's corners may be interpolated: what is then drawn is no
+/// nearer than the triangle's plane by more than DPSM_REFINE_NEARER of the tolerance, and no farther
+/// by more than the tolerance, or lies within `reach` on the disk of it. The plane's slope is taken
+/// as how much the corners' distances differ over the longest chord, which is at most what it is.
+///
+/// hull: the corners on the disk; plane: (unit normal, height); reach: what dpsm_refine_reach gives;
+/// depth_tolerance: relative. Domain: as for dpsm_classify_flat_error; false where a chord is long.
+fn dpsm_refine_flat(
+    hull: DpsmHull,
+    distances: vec3<f32>,
+    plane: vec4<f32>,
+    reach: f32,
+    depth_tolerance: f32,
+) -> bool {
+    let ab = hull.b - hull.a;
+    let bc = hull.c - hull.b;
+    let ca = hull.a - hull.c;
+    let square = max(max(dot(ab, ab), dot(bc, bc)), dot(ca, ca));
+    if !(square <= DPSM_TRIANGLE_CHORD * DPSM_TRIANGLE_CHORD) {
+        return false;
+    }
+    let nearest = max(min(min(distances.x, distances.y), distances.z), DPSM_SMALLEST);
+    let farthest = max(max(distances.x, distances.y), distances.z);
+    let spread = min(farthest / nearest - 1.0, DPSM_CLASSIFY_SPREAD);
+    let along = reach * spread / max(sqrt(square), DPSM_EDGE_NEAREST);
+    let error = dpsm_classify_flat_error(hull, distances, plane);
+    let limits = vec2<f32>(DPSM_REFINE_NEARER * depth_tolerance, depth_tolerance);
+    return error.x <= limits.x && error.y <= limits.y + min(along, DPSM_REFINE_SLOPE);
+}
+
+/// The clip-space position at which a vertex is drawn: its disk coordinates scaled to the stored
+/// disk, and its stored depth.
+///
+/// Domain: r <= 2^62, distance <= 2^63. Bound: 3.5 eps relative for the coordinates, and as for
+/// dpsm_depth.
+fn dpsm_refine_clip(uv: vec2<f32>, distance: f32, light: DpsmLight) -> vec4<f32> {
+    let depth = dpsm_depth(distance, light.near, light.far);
+    return vec4<f32>(uv / (1.0 + light.guard), dpsm_depth_stored(depth, light.reversed), 1.0);
+}
+
+// dpsm::part
+
+/// Not drawn: it does not touch the stored disk.
+const DPSM_PART_OUTSIDE: u32 = 0u;
+
+/// Drawn by its hull.
+const DPSM_PART_DRAWN: u32 = 1u;
+
+/// To be halved.
+const DPSM_PART_LARGE: u32 = 2u;
 
 /// A part of a triangle: unit vectors to its corners.
 struct DpsmPart {
@@ -901,10 +1130,10 @@ struct DpsmPart {
 ///
 /// Domain: path >= 1; vertices as for dpsm_triangle_plane, no two in opposite directions. Bound:
 /// corners 12 eps absolute a halving, over the cosine of half the halved edge's angle.
-fn dpsm_classify_part(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, path: u32) -> DpsmPart {
+fn dpsm_part(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, path: u32) -> DpsmPart {
     var part = DpsmPart(dpsm_edge_unit(a), dpsm_edge_unit(b), dpsm_edge_unit(c));
     for (var bit = firstLeadingBit(path | 1u); bit > 0u; bit -= 1u) {
-        part = dpsm_classify_half(part, ((path >> (bit - 1u)) & 1u) != 0u);
+        part = dpsm_part_half(part, ((path >> (bit - 1u)) & 1u) != 0u);
     }
     return part;
 }
@@ -912,8 +1141,8 @@ fn dpsm_classify_part(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, path: u32) -> Dp
 /// One half of a part: its longest edge's middle takes the place of that edge's first or, for
 /// `second`, last corner.
 ///
-/// Domain: unit vectors. Bound: as for dpsm_classify_part.
-fn dpsm_classify_half(part: DpsmPart, second: bool) -> DpsmPart {
+/// Domain: unit vectors. Bound: as for dpsm_part.
+fn dpsm_part_half(part: DpsmPart, second: bool) -> DpsmPart {
     let ab = part.b - part.a;
     let bc = part.c - part.b;
     let ca = part.a - part.c;
@@ -932,15 +1161,15 @@ fn dpsm_classify_half(part: DpsmPart, second: bool) -> DpsmPart {
     return DpsmPart(middle, turned.b, turned.c);
 }
 
-/// What becomes of a part: DPSM_CULLED where it does not touch the stored disk, DPSM_CURVED where
-/// a hull surrounds it well, DPSM_LARGE where it must be halved.
+/// What becomes of a part: DPSM_PART_OUTSIDE, DPSM_PART_DRAWN where a hull surrounds it well, or
+/// DPSM_PART_LARGE.
 ///
 /// Domain: unit vectors, flipped. On the safe side: a part is never culled that touches the disk.
-fn dpsm_classify_kind(part: DpsmPart, light: DpsmLight) -> u32 {
+fn dpsm_part_kind(part: DpsmPart, light: DpsmLight) -> u32 {
     // beyond the border is at most a hemisphere: convex, so that its corners speak for a part
     let top = max(max(part.a.z, part.b.z), part.c.z) + DPSM_EDGE_ROUNDING;
     if top < dpsm_caster_border(light.guard) {
-        return DPSM_CULLED;
+        return DPSM_PART_OUTSIDE;
     }
     let disk_a = dpsm_project(part.a);
     let disk_b = dpsm_project(part.b);
@@ -952,7 +1181,7 @@ fn dpsm_classify_kind(part: DpsmPart, light: DpsmLight) -> u32 {
     // arcs bow by up to c^2 / 8: more than a texel and the part's own width wastes fragments
     let bow = 0.125 * chord * chord;
     let wide = bow > dpsm_texel_width(light.size, light.guard) && bow * chord > area;
-    return select(DPSM_CURVED, DPSM_LARGE, chord > DPSM_TRIANGLE_CHORD || wide);
+    return select(DPSM_PART_DRAWN, DPSM_PART_LARGE, chord > DPSM_TRIANGLE_CHORD || wide);
 }
 
 // dpsm::visibility

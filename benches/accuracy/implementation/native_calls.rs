@@ -13,12 +13,13 @@ structs! {
     DpsmLookup { coordinates, depth, layer, hemisphere, mapped }
     DpsmPart { a, b, c }
     DpsmPlane { uv, lean, facing, cosine, pitch, height, distance, near, hemisphere }
+    DpsmProjected { p, distance, uv }
     DpsmReader { receiver, kind, scale, unscale, middle, texel, depth }
     DpsmReceiver { plane, distance, rounding }
     DpsmReceiverVertex { front, back, depth, hemisphere_value }
     DpsmTap { uv, hemisphere }
     DpsmTaps { count, kind, quantum, tolerance }
-    DpsmTriangle { first, second, third, plane, span }
+    DpsmTriangle { first, second, third, face, span }
 }
 calls! {
     dpsm_to_light(Vec3<f32>, DpsmLight)
@@ -53,16 +54,15 @@ calls! {
     dpsm_edge_ordered(Vec3<f32>, Vec3<f32>)
     dpsm_edge_normal(Vec3<f32>, Vec3<f32>)
     dpsm_edge_sagitta(f32, Vec2<f32>)
-    dpsm_edge_bow(Vec3<f32>, Vec3<f32>, DpsmLight)
-    dpsm_edge_flat(Vec3<f32>, Vec3<f32>, DpsmLight, f32)
     dpsm_edge_terms(Vec2<f32>)
-    dpsm_edge_line(Vec3<f32>, Vec3<f32>, DpsmLight, f32)
+    dpsm_edge_line(Vec3<f32>, Vec3<f32>)
     dpsm_triangle_plane(Vec3<f32>, Vec3<f32>, Vec3<f32>)
-    dpsm_triangle(Vec3<f32>, Vec3<f32>, Vec3<f32>, DpsmLight, f32)
+    dpsm_triangle_face(Vec4<f32>, f32)
+    dpsm_triangle(Vec3<f32>, Vec3<f32>, Vec3<f32>, DpsmLight)
     dpsm_triangle_span(Vec3<f32>, Vec3<f32>, Vec3<f32>, DpsmLight)
     dpsm_triangle_inside(DpsmTriangle, Vec2<f32>)
     dpsm_triangle_covers(DpsmTriangle, Vec2<f32>)
-    dpsm_triangle_distance(DpsmTriangle, Vec2<f32>)
+    dpsm_triangle_distance(Vec4<f32>, Vec2<f32>)
     dpsm_triangle_disk(Vec2<f32>, Vec2<f32>, f32)
     dpsm_triangle_behind(DpsmTriangle, f32)
     dpsm_triangle_fragment(DpsmTriangle, Vec2<f32>, DpsmLight, f32)
@@ -70,11 +70,24 @@ calls! {
     dpsm_triangle_hull(Vec3<f32>, Vec3<f32>, Vec3<f32>, DpsmLight)
     dpsm_triangle_tip(Vec2<f32>, Vec2<f32>, f32, f32)
     dpsm_triangle_needle(Vec2<f32>, Vec2<f32>, Vec2<f32>, Vec2<f32>, f32)
+    dpsm_projected(Vec3<f32>)
     dpsm_classify_flat_error(DpsmHull, Vec3<f32>, Vec4<f32>)
     dpsm_classify_distance(Vec4<f32>, Vec2<f32>)
-    dpsm_classify_part(Vec3<f32>, Vec3<f32>, Vec3<f32>, u32)
-    dpsm_classify_half(DpsmPart, bool)
-    dpsm_classify_kind(DpsmPart, DpsmLight)
+    dpsm_refine_point(Vec3<f32>, Vec3<f32>)
+    dpsm_refine_reach(DpsmLight, f32)
+    dpsm_refine_long(Vec2<f32>, Vec2<f32>)
+    dpsm_refine_splits(DpsmProjected, DpsmProjected, f32)
+    dpsm_refine_corners(u32, u32, bool)
+    dpsm_refine_turned(u32, u32)
+    dpsm_refine_edge(u32, u32)
+    dpsm_refine_fat(DpsmProjected, DpsmProjected, DpsmProjected, u32)
+    dpsm_refine_foot(Vec3<f32>, Vec3<f32>, Vec3<f32>, Vec4<f32>)
+    dpsm_refine_outside(Vec2<f32>, Vec2<f32>, Vec2<f32>, DpsmLight)
+    dpsm_refine_flat(DpsmHull, Vec3<f32>, Vec4<f32>, f32, f32)
+    dpsm_refine_clip(Vec2<f32>, f32, DpsmLight)
+    dpsm_part(Vec3<f32>, Vec3<f32>, Vec3<f32>, u32)
+    dpsm_part_half(DpsmPart, bool)
+    dpsm_part_kind(DpsmPart, DpsmLight)
     dpsm_lookup(Vec3<f32>, DpsmLight)
     dpsm_receiver_vertex(Vec3<f32>, DpsmLight)
     dpsm_position_error(Vec3<f32>)

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Chunk, Set, ShadowMaps, layers_of};
-use crate::gpu::lists::{CURVED, DRAW_BYTES, FLAT, MASKED, STEEP, STRADDLING};
+use crate::gpu::lists::{DRAW_BYTES, FLAT, MASKED, MASKED_PARTS, PARTS, PLANE, WHOLE, Work};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::multiview::view_mask;
 use crate::gpu::passes::{MapPass, PASS_BYTES, depth_attachment};
@@ -14,25 +14,23 @@ use crate::scalar::light::{DPSM_ATLAS, DPSM_REVERSED};
 /// What to record of the maps' making. Drawing without sorting needs lists that were kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
-    /// Sorting of triangles into lists, for methods that do.
+    /// Making the lists, for methods that have them.
     pub sort: bool,
-    /// The passes; the members below choose among the sorted lists.
+    /// The passes; the members below choose among the refined lists.
     pub draw: bool,
-    /// Flat triangles of one hemisphere, and those that straddle the seam.
+    /// What is drawn as depth alone.
     pub flat: bool,
-    /// Flat triangles whose distance is computed at each fragment.
-    pub steep: bool,
-    /// Exact triangles and parts.
-    pub curved: bool,
+    /// What is drawn with its plane's distance at each fragment.
+    pub planes: bool,
 }
 
 impl Parts {
     /// Everything.
-    pub const ALL: Self = Self { sort: true, draw: true, flat: true, steep: true, curved: true };
+    pub const ALL: Self = Self { sort: true, draw: true, flat: true, planes: true };
 }
 
 impl ShadowMaps {
-    /// Records the passes that make all maps, sorting included.
+    /// Records the passes that make all maps, and the making of their lists.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -59,16 +57,25 @@ impl ShadowMaps {
             for (batch_number, batch) in self.batches.iter().enumerate() {
                 let job = number * self.batches.len() + batch_number;
                 let (mut first, last) = (job == 0, job + 1 == jobs);
-                let set = &self.sets[job.min(self.sets.len() - 1)];
-                let sorted = batch.clone().find(|&chunk| self.chunks[chunk].is_sorted);
-                if let (Some(chunk), Some(sorter), Some(group), true) =
-                    (sorted, &self.sorter, &set.sorting, parts.sort)
+                let set = &self.sets[self.places[job]];
+                let listed = batch.clone().find(|&chunk| self.chunks[chunk].by.is_some());
+                let sorter = listed.and_then(|chunk| {
+                    let by = self.chunks[chunk].by?;
+                    Some((chunk, self.sorters.get(&by)?))
+                });
+                if let (Some((chunk, sorter)), Some(group), true) =
+                    (sorter, &set.sorting, parts.sort)
                 {
-                    let offset = (at + chunk * maps) * PASS_BYTES;
+                    let uniforms = at + chunk * maps;
                     let ends = Ends { first, last: last && !parts.draw };
-                    let bound = (group, offset as u32);
-                    let count = self.chunks[chunk].triangles.len() as u32;
-                    sorter.record(encoder, bound, count, &set.lists, stamps, ends);
+                    let Chunk { triangles, vertices, .. } = &self.chunks[chunk];
+                    let work = Work {
+                        offset: (uniforms * PASS_BYTES) as u32,
+                        triangles: triangles.len() as u32,
+                        vertices: vertices.len() as u32,
+                        levels: self.uniforms[uniforms].levels,
+                    };
+                    sorter.record(encoder, group, work, &set.lists, stamps, ends);
                     first = false;
                 }
                 if !parts.draw {
@@ -85,7 +92,11 @@ impl ShadowMaps {
                     let clear = (batch_number == 0).then_some(empty);
                     let mut pass = begin(encoder, (view, views), clear, stamps, ends);
                     let is_atlas = light.placement == DPSM_ATLAS;
-                    let drawn = if is_atlas { 0..maps } else { pass_number..pass_number + 1 };
+                    // with multiview one pass draws the lists of all maps
+                    let drawn = match is_atlas || views > 1 {
+                        true => 0..maps,
+                        false => pass_number..pass_number + 1,
+                    };
                     for map in drawn {
                         if is_atlas {
                             let size = light.size;
@@ -93,7 +104,13 @@ impl ShadowMaps {
                             let side = size as u32;
                             pass.set_scissor_rect(map as u32 * side, 0, side, side);
                         }
-                        for chunk in batch.clone() {
+                        let seen = |&chunk: &usize| {
+                            let own = self.chunks[chunk].method;
+                            views == 1
+                                || map == 0
+                                || [Method::Exact, Method::Refined].contains(&own)
+                        };
+                        for chunk in batch.clone().filter(seen) {
                             let place = (at + chunk * maps + map, number);
                             self.draw(&mut pass, mesh, &self.chunks[chunk], place, set, parts);
                         }
@@ -117,7 +134,7 @@ impl ShadowMaps {
         parts: Parts,
     ) {
         let MapPass { light, hemisphere, first_masked, .. } = self.uniforms[at];
-        let Chunk { triangles, method, is_sorted } = chunk;
+        let Chunk { triangles, method, by, .. } = chunk;
         let views = self.views[number];
         let pipelines = &self.pipelines[&(views, *method)];
         // each view of multiview draws what any of them sees
@@ -127,30 +144,37 @@ impl ShadowMaps {
         let masked = triangles.start.max(first_masked)..triangles.end;
         let draws = &set.lists.draws;
         match method {
-            Method::Exact | Method::Hybrid => {
+            Method::Refined => {
                 let map = u64::from(hemisphere);
-                pass.set_vertex_buffer(0, mesh.positions.slice(..));
-                pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);
                 if parts.flat {
                     pass.set_pipeline(&pipelines[0]);
+                    pass.set_vertex_buffer(0, set.lists.vertices.slice(..));
+                    pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);
                     pass.draw_indexed_indirect(draws, (FLAT + map) * DRAW_BYTES);
+                }
+                if parts.planes {
+                    pass.set_vertex_buffer(0, set.lists.records.slice(..));
                     pass.set_pipeline(&pipelines[1]);
-                    pass.draw_indirect(draws, STRADDLING * DRAW_BYTES);
-                }
-                if parts.steep {
-                    pass.set_pipeline(&pipelines[2]);
-                    pass.draw_indirect(draws, (STEEP + map) * DRAW_BYTES);
-                }
-                if parts.curved {
-                    pass.set_pipeline(&pipelines[3]);
-                    pass.draw_indirect(draws, (CURVED + map) * DRAW_BYTES);
+                    pass.draw_indirect(draws, (PLANE + map) * DRAW_BYTES);
                     if !masked.is_empty() {
-                        pass.set_pipeline(&pipelines[4]);
+                        pass.set_pipeline(&pipelines[2]);
                         pass.draw_indirect(draws, (MASKED + map) * DRAW_BYTES);
                     }
                 }
+                // nothing, unless the lists had no room
+                pass.set_pipeline(&pipelines[3]);
+                pass.draw_indirect(draws, WHOLE * DRAW_BYTES);
             }
-            Method::Cube if *is_sorted => {
+            Method::Exact => {
+                let map = u64::from(hemisphere);
+                pass.set_pipeline(&pipelines[0]);
+                pass.draw_indirect(draws, (PARTS + map) * DRAW_BYTES);
+                if !masked.is_empty() {
+                    pass.set_pipeline(&pipelines[1]);
+                    pass.draw_indirect(draws, (MASKED_PARTS + map) * DRAW_BYTES);
+                }
+            }
+            Method::Cube if by.is_some() => {
                 pass.set_pipeline(&pipelines[0]);
                 pass.set_vertex_buffer(0, mesh.positions.slice(..));
                 pass.set_index_buffer(set.lists.indices.slice(..), wgpu::IndexFormat::Uint32);

@@ -171,17 +171,16 @@ fn chords(points: &[f64], most: f64) -> bool {
     apart(a, b) <= most && apart(b, c) <= most && apart(c, a) <= most
 }
 
+/// A triangle's plane as dpsm_triangle_face gives it.
+fn face(i: &[f64]) -> bool {
+    // its height is at least 2^-20 of the farthest vertex's distance
+    (two(-50)..=two(62)).contains(&i[3]) && (1.0 - 32.0 * EPS..=two(21)).contains(&length(&i[..3]))
+}
+
 /// A prepared triangle as dpsm_triangle gives it: lines, plane and span.
 fn prepared(i: &[f64]) -> bool {
     let line = |k: usize| length(&i[k..k + 3]) <= 1.0 && i[k + 3].abs() <= 1.0;
-    let farthest = i[15];
-    line(0)
-        && line(4)
-        && line(8)
-        && (two(-50)..=two(62)).contains(&farthest)
-        // its height is at least 2^-20 of the farthest vertex's distance
-        && (1.0 - 32.0 * EPS..=two(21)).contains(&length(&i[12..15]))
-        && largest(&i[16..19]) <= two(40)
+    line(0) && line(4) && line(8) && face(&i[12..]) && largest(&i[16..19]) <= two(40)
 }
 
 /// A receiver as dpsm_receiver gives it.
@@ -332,20 +331,20 @@ edge {
     dpsm_edge_sagitta Absolute
         |i| i[0].abs() <= 1.0 && length(&i[1..]) <= 1.0,
         |i, r, a| absolute(r, a, 5.0, length(&i[1..]).powi(2));
-    dpsm_edge_bow Interval |i| triangle(&i[..6]) && light(i, 6).inside(), none;
-    dpsm_edge_flat Interval |i| triangle(&i[..6]) && light(i, 6).inside(), none;
     dpsm_edge_terms Absolute
         |i| largest(i) <= two(61),
         |i, r, a| absolute(r, a, 3.0, 1.0 + length(i).powi(2));
-    dpsm_edge_line Interval |i| triangle(&i[..6]) && light(i, 6).inside(), none;
+    dpsm_edge_line Interval triangle, none;
 }
 triangle {
     dpsm_triangle_plane Interval triangle, none;
+    dpsm_triangle_face Interval
+        |i| unit(&i[..3]) && i[3].abs() <= two(62) && within(&i[4..], two(-50), two(62)), none;
     dpsm_triangle Interval |i| triangle(&i[..9]) && light(i, 9).inside(), none;
     dpsm_triangle_span Interval |i| triangle(&i[..9]) && light(i, 9).inside(), none;
     dpsm_triangle_inside Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
     dpsm_triangle_covers Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
-    dpsm_triangle_distance Interval |i| prepared(i) && length(&i[19..]) <= 4.0, none;
+    dpsm_triangle_distance Interval |i| face(i) && length(&i[4..]) <= 4.0, none;
     dpsm_triangle_disk Absolute
         |i| {
             // half the map's width is 1 + guard
@@ -375,7 +374,8 @@ triangle {
 }
 classify {
     dpsm_classify_usable Exact any, |_, r, a| exact(r, a);
-    dpsm_classify Interval |i| light(i, 9).inside(), none;
+    dpsm_projected Interval |i| point(i, -51, 62), none;
+    dpsm_classify Interval |i| light(i, 20).inside(), none;
     dpsm_classify_flat_error Interval
         |i| {
             largest(&i[..6]) <= 4.0
@@ -390,10 +390,42 @@ classify {
             unit(&i[..3]) && i[3].abs() <= two(62) && length(&i[4..]) <= 4.0
         },
         none;
-    dpsm_classify_misses Interval |i| chords(i, 0.5) && light(i, 6).inside(), none;
-    dpsm_classify_part Interval |i| triangle(&i[..9]) && i[9] >= 1.0, none;
-    dpsm_classify_half Interval |i| i[..9].chunks(3).all(unit), none;
-    dpsm_classify_kind Interval |i| i[..9].chunks(3).all(unit) && light(i, 9).inside(), none;
+    dpsm_classify_misses Interval
+        |i| chords(i, 0.5) && light(i, 6).inside() && within(&i[30..], 0.0, two(-4)), none;
+}
+refine {
+    dpsm_refine_point Absolute
+        triangle,
+        |i, r, a| absolute(r, a, 28.0, length(&i[..3]).min(length(&i[3..])));
+    dpsm_refine_reach Interval |i| light(i, 0).inside() && within(&i[24..], 0.0, two(16)), none;
+    dpsm_refine_long Interval |i| largest(i) <= two(60), none;
+    dpsm_refine_splits Interval
+        |i| triangle(&i[..3]) && triangle(&i[6..9]) && largest(i) <= two(60) && i[12] >= 0.0, none;
+    dpsm_refine_corners Exact any, |_, r, a| exact(r, a);
+    dpsm_refine_turned Exact |i| i[0] < 8.0 && i[1] < 8.0, |_, r, a| exact(r, a);
+    dpsm_refine_edge Exact any, |_, r, a| exact(r, a);
+    dpsm_refine_fat Interval
+        |i| triangle(&i[..3]) && triangle(&i[6..9]) && triangle(&i[12..15]), none;
+    dpsm_refine_foot Interval
+        |i| triangle(&i[..9]) && unit(&i[9..12]) && i[12].abs() <= two(62), none;
+    dpsm_refine_outside Interval |i| largest(&i[..6]) <= two(60) && light(i, 6).inside(), none;
+    dpsm_refine_flat Interval
+        |i| {
+            largest(&i[..6]) <= 4.0
+                && chords(i, 0.25)
+                && within(&i[6..9], two(-50), two(62))
+                && unit(&i[9..12])
+                && i[12].abs() <= two(62)
+                && within(&i[13..], 0.0, 1.0)
+        },
+        none;
+    dpsm_refine_clip Interval
+        |i| largest(&i[..2]) <= two(61) && within(&i[2..3], 0.0, two(62)) && light(i, 3).inside(), none;
+}
+part {
+    dpsm_part Interval |i| triangle(&i[..9]) && i[9] >= 1.0, none;
+    dpsm_part_half Interval |i| i[..9].chunks(3).all(unit), none;
+    dpsm_part_kind Interval |i| i[..9].chunks(3).all(unit) && light(i, 9).inside(), none;
 }
 visibility {
     dpsm_lookup Absolute
