@@ -178,7 +178,7 @@ impl Target<'_> {
                 let Some(face) = leaf.face else {
                     return self.store(fragment.x, fragment.y, fragment.depth);
                 };
-                let l = dpsm_triangle_distance(face, uv);
+                let l = dpsm_triangle_distance(face, uv).max(leaf.nearest);
                 let weights = || {
                     let place = |index: u32| {
                         let vertex = &self.frame.vertices[index as usize];

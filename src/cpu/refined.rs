@@ -7,7 +7,7 @@ use crate::render::{Frame, Method, float, refinement_levels};
 use crate::scalar::classify::{
     DPSM_IN_BACK, DPSM_IN_FRONT, DpsmProjected, dpsm_classify, dpsm_classify_misses, dpsm_projected,
 };
-use crate::scalar::float::{Vec3, Vec4};
+use crate::scalar::float::{Vec2, Vec3, Vec4};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip, dpsm_to_light};
 use crate::scalar::refine::{
     DPSM_REFINE_INNER, dpsm_refine_corners, dpsm_refine_edge, dpsm_refine_fat, dpsm_refine_flat,
@@ -24,6 +24,8 @@ pub struct Leaf {
     /// The plane that its fragments take their distance from (`dpsm_triangle_face`); for `None`
     /// the corners' distances are interpolated.
     pub face: Option<Vec4<f32>>,
+    /// The least distance that they take.
+    pub nearest: f32,
     /// The triangle of the mesh that it is a part of.
     pub triangle: u32,
 }
@@ -76,6 +78,16 @@ struct Edges {
     free: u32,
 }
 
+/// The least distance of a part whose edges follow their arcs: its nearest corner's, less 2 c^2 of it
+/// for what an edge of the chord c may pass nearer (docs/refine.md).
+fn nearest_of([a, b, c]: &[DpsmProjected<f32>; 3]) -> f32 {
+    let square = |side: Vec2<f32>| side.dot(side);
+    let sides = [b.uv - a.uv, c.uv - b.uv, a.uv - c.uv].map(square);
+    let square = sides[0].max(sides[1]).max(sides[2]);
+    let nearest = a.distance.min(b.distance).min(c.distance);
+    nearest * (1.0 - 2.0 * square).max(0.0)
+}
+
 impl Refiner<'_> {
     fn root(&mut self, triangle: u32, corners: [Vec3<f32>; 3]) {
         let light = self.frame.light;
@@ -97,7 +109,7 @@ impl Refiner<'_> {
         if dpsm_refine_foot(a.p, b.p, c.p, plane) {
             self.split_at_foot(root, seen, split);
         } else if split == 0 {
-            self.draw(root, seen);
+            self.draw(root, seen, false);
         } else if !dpsm_refine_outside(a.uv, b.uv, c.uv, light) {
             self.split(root, seen, Edges { split, free: 0 }, 1);
         }
@@ -112,33 +124,41 @@ impl Refiner<'_> {
             let own = (split >> i & 1) | splits(to, foot) << 1 | splits(foot, from) << 2;
             let part = [from, to, foot];
             if own == 0 {
-                self.leaf(root, part);
+                self.leaf(root, part, false);
             } else if !dpsm_refine_outside(from.uv, to.uv, foot.uv, self.frame.light) {
                 self.split(root, part, Edges { split: own, free: 0 }, 2);
             }
         }
     }
 
-    fn leaf(&mut self, root: Root, corners: [DpsmProjected<f32>; 3]) {
+    fn leaf(&mut self, root: Root, corners: [DpsmProjected<f32>; 3], loose: bool) {
         let light = self.frame.light;
         let [a, b, c] = corners;
         let is_outside = dpsm_refine_outside(a.uv, b.uv, c.uv, light);
         if !is_outside && !dpsm_classify_misses(a.uv, b.uv, c.uv, light, 0.0) {
-            self.draw(root, corners);
+            self.draw(root, corners, loose);
         }
     }
 
-    fn draw(&mut self, root: Root, corners: [DpsmProjected<f32>; 3]) {
+    fn draw(&mut self, root: Root, corners: [DpsmProjected<f32>; 3], loose: bool) {
         let Root { triangle, plane, farthest } = root;
         let [a, b, c] = corners;
         let distances = Vec3::new(a.distance, b.distance, c.distance);
         let hull = DpsmHull { a: a.uv, b: b.uv, c: c.uv };
+        // chords of inner edges may leave the part, to where its plane is farther away or nearer
+        let (nearest, farthest) = match loose {
+            true => (0.0, farthest),
+            false => {
+                let own = distances.x.max(distances.y).max(distances.z);
+                (nearest_of(&corners), own)
+            }
+        };
         let is_flat = dpsm_refine_flat(hull, distances, plane, self.reach, self.depth_tolerance);
         let face = match is_flat && self.frame.mask(triangle).is_none() {
             true => None,
             false => Some(dpsm_triangle_face(plane, farthest)),
         };
-        self.leaves.push(Leaf { corners, face, triangle });
+        self.leaves.push(Leaf { corners, face, nearest, triangle });
     }
 
     fn split(&mut self, root: Root, corners: [DpsmProjected<f32>; 3], edges: Edges, level: u32) {
@@ -194,7 +214,7 @@ impl Refiner<'_> {
                 own.free |= u32::from(free) << k;
             }
             match own.split == 0 || level >= self.levels {
-                true => self.leaf(root, of(chosen)),
+                true => self.leaf(root, of(chosen), own.free != 0),
                 false => self.split(root, of(chosen), own, level + 1),
             }
         }

@@ -38,7 +38,7 @@ const ENTRY_BYTES: u64 = 8;
 const PART_BYTES: u64 = 112;
 const VERTEX_BYTES: u64 = 32;
 const QUEUE_BYTES: u64 = 16;
-const RECORD_BYTES: u64 = 84;
+const RECORD_BYTES: u64 = 96;
 
 /// Words of the counts in refine.wesl; those in the other kernels are fewer.
 const COUNTS: u64 = 40;

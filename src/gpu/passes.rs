@@ -93,11 +93,12 @@ const REFINED_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayo
     ],
 };
 
-/// Of a vertex of what is drawn with its plane: disk coordinates, plane, and its triangle.
+/// Of a vertex of what is drawn with its plane: disk coordinates, plane, its triangle, and the least
+/// distance.
 const PLANAR_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
-    array_stride: 28,
+    array_stride: 32,
     step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![5 => Float32x2, 6 => Float32x4, 7 => Uint32],
+    attributes: &wgpu::vertex_attr_array![5 => Float32x2, 6 => Float32x4, 7 => Uint32, 8 => Float32],
 };
 
 /// The draws of a method, one pipeline each: opaque triangles first, alpha-tested ones last.
