@@ -153,9 +153,14 @@ fn needles_are_not_fat_and_wide_parts_are() {
     let needle = seen([[0.0, 0.0, 1.0], [0.4, 0.0, 1.0], [0.2, 0.001, 1.0]]);
     assert!(fat(wide, 1) && fat(wide, 7) && fat(needle, 0));
     assert!(!fat(needle, 1) && !fat(needle, 2));
-    // wide as it is, it spans more than 128 degrees
-    let vast = seen([[3.0, 0.0, 0.1], [-3.0, 0.1, 0.1], [0.0, 3.0, 0.1]]);
+    // wide as it is, a side spans 130 degrees
+    let vast = seen([[1.0, 0.0, 0.0], [-0.643, 0.766, 0.0], [0.0, 0.0, 1.0]]);
     assert!(!fat(vast, 1));
+    let less = seen([[1.0, 0.0, 0.0], [-0.5, 0.866, 0.0], [0.0, 0.0, 1.0]]);
+    assert!(fat(less, 1));
+    // along one great circle, but for a hundredth
+    let circle = seen([[1.0, 0.0, 0.01], [0.643, 0.766, 0.01], [-0.174, 0.985, 0.01]]);
+    assert!(!fat(circle, 1) && !fat(circle, 4));
 }
 
 #[test]
@@ -309,6 +314,90 @@ fn leaves_cover_their_triangle_and_little_more() {
     }
     println!("{inside} inside, {outside} outside, {all} leaves");
     assert!(inside > 2000 && outside > 10_000);
+}
+
+/// The least distance of a triangle's points.
+fn nearest_point([a, b, c]: [Vec3<f64>; 3]) -> f64 {
+    let steps = 64;
+    let at = |i: i32, j: i32| {
+        let [s, t] = [i, j].map(|k| f64::from(k) / f64::from(steps));
+        (a * (1.0 - s - t) + b * s + c * t).length()
+    };
+    let all = (0..=steps).flat_map(|i| (0..=steps - i).map(move |j| (i, j)));
+    all.map(|(i, j)| at(i, j)).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn planes_seen_edge_on_are_no_nearer_than_their_triangles() {
+    let mut rng = rng("edge-on");
+    let mut stored = 0;
+    for _ in 0..3000 {
+        // in a plane that passes beside the light by 1/1000, all of it on one side
+        let across = unit(&mut rng);
+        let along = across.cross(unit(&mut rng));
+        let along = along / along.length();
+        let aside = across.cross(along);
+        let point = |rng: &mut Rng| {
+            across * 1e-3 + along * (2.0 + rng.f32()) + aside * (2.0 * rng.f32() - 1.0)
+        };
+        let corners = [0; 3].map(|_| point(&mut rng));
+        let frame = frame(&[corners], Settings { size: 64, far: Some(8.0), ..Settings::default() });
+        let least = nearest_point(placed(&frame)) * 0.98;
+        let maps = dpsm::cpu::make_maps(&frame).unwrap();
+        for depth in maps.depths.iter().filter(|&&depth| depth < 1.0) {
+            stored += 1;
+            let l = f64::from(*depth) * f64::from(frame.light.far);
+            assert!(l >= least, "{corners:?}: {l} of {least}");
+        }
+    }
+    println!("{stored} texels");
+    assert!(stored > 100, "{stored}");
+}
+
+#[test]
+fn lights_close_to_a_surface_see_it_on_its_side_alone() {
+    let mut rng = rng("flush");
+    let (mut seen, mut over) = (0, 0);
+    for _ in 0..300 {
+        let (up, height) = (unit(&mut rng), spread(&mut rng, -20, -8).abs());
+        // around the light
+        let right = up.cross(unit(&mut rng));
+        let right = right / right.length();
+        let other = up.cross(right);
+        let corner = |turn: f32| {
+            let angle = turn * std::f32::consts::TAU;
+            right * angle.cos() + other * angle.sin() + up * height
+        };
+        let turn = rng.f32();
+        let corners = [0.0, 1.0 / 3.0, 2.0 / 3.0]
+            .map(|third| corner(turn + third + 0.1 * rng.f32()) * (0.5 + rng.f32()));
+        let corners = corners.map(|p| p - up * up.dot(p) + up * height);
+        let frame = frame(&[corners], Settings { size: 128, ..Settings::default() });
+        let texel = f64::from(dpsm_texel_width(frame.light.size, frame.light.guard));
+        let placed = placed(&frame);
+        let normal = (placed[1] - placed[0]).cross(placed[2] - placed[0]);
+        let normal = normal / normal.length() * normal.dot(placed[0]).signum();
+        for map in 0..2 {
+            let leaves = leaves(&frame, map, 0..1);
+            for i in 0..128 * 128 {
+                let at = |k: i32| (f64::from(k) - 63.5) * texel;
+                let uv = Vec2::new(at(i % 128), at(i / 128));
+                if uv.length() > 1.0 {
+                    continue;
+                }
+                let d = direction(uv);
+                let d = if map == 0 { d } else { Vec3::new(d.x, d.y, -d.z) };
+                // how far above the plane's horizon, in texels
+                let above = normal.dot(d) * 0.5 * (1.0 + uv.dot(uv)) / texel;
+                let hit = leaves.iter().any(|leaf| covers(leaf, uv, 0.0));
+                seen += usize::from(hit);
+                over += usize::from(hit && above < -1.0);
+                assert!(hit || above < 4.0, "{corners:?} {map} {uv:?}: a hole {above} above");
+            }
+        }
+    }
+    println!("{seen} texels, {over} below the horizon");
+    assert!(seen > 1_000_000 && over == 0, "{seen} {over}");
 }
 
 #[test]

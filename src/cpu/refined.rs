@@ -7,7 +7,7 @@ use crate::render::{Frame, Method, float, refinement_levels};
 use crate::scalar::classify::{
     DPSM_IN_BACK, DPSM_IN_FRONT, DpsmProjected, dpsm_classify, dpsm_classify_misses, dpsm_projected,
 };
-use crate::scalar::float::{Vec2, Vec3, Vec4};
+use crate::scalar::float::{Vec3, Vec4};
 use crate::scalar::hemisphere::{DPSM_BACK, DPSM_FRONT, dpsm_flip, dpsm_to_light};
 use crate::scalar::refine::{
     DPSM_REFINE_INNER, dpsm_refine_corners, dpsm_refine_edge, dpsm_refine_fat, dpsm_refine_flat,
@@ -78,14 +78,23 @@ struct Edges {
     free: u32,
 }
 
-/// The least distance of a part whose edges follow their arcs: its nearest corner's, less 2 c^2 of it
-/// for what an edge of the chord c may pass nearer (docs/refine.md).
-fn nearest_of([a, b, c]: &[DpsmProjected<f32>; 3]) -> f32 {
-    let square = |side: Vec2<f32>| side.dot(side);
-    let sides = [b.uv - a.uv, c.uv - b.uv, a.uv - c.uv].map(square);
-    let square = sides[0].max(sides[1]).max(sides[2]);
-    let nearest = a.distance.min(b.distance).min(c.distance);
-    nearest * (1.0 - 2.0 * square).max(0.0)
+/// The least distance of a part's points: at the light's foot where that is inside, else on an edge.
+fn nearest_of(corners: [Vec3<f32>; 3], plane: Vec4<f32>) -> f32 {
+    let (normal, foot) = (plane.xyz(), plane.xyz() * plane.w);
+    let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+    let inside = |(a, b): &(Vec3<f32>, Vec3<f32>)| normal.dot((*b - *a).cross(foot - *a)) >= 0.0;
+    if edges.iter().all(inside) {
+        return plane.w.abs();
+    }
+    edges.into_iter().map(|(a, b)| nearest_between(a, b)).fold(f32::INFINITY, f32::min)
+}
+
+/// The least distance of an edge's points.
+fn nearest_between(a: Vec3<f32>, b: Vec3<f32>) -> f32 {
+    let ab = b - a;
+    let smallest = 1.0 / (1u128 << 120) as f32;
+    let along = (-a.dot(ab) / ab.dot(ab).max(smallest)).clamp(0.0, 1.0);
+    (a + ab * along).length()
 }
 
 impl Refiner<'_> {
@@ -150,7 +159,7 @@ impl Refiner<'_> {
             true => (0.0, farthest),
             false => {
                 let own = distances.x.max(distances.y).max(distances.z);
-                (nearest_of(&corners), own)
+                (nearest_of(corners.map(|corner| corner.p), plane), own)
             }
         };
         let is_flat = dpsm_refine_flat(hull, distances, plane, self.reach, self.depth_tolerance);

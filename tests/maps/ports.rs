@@ -98,10 +98,20 @@ fn apart(frame: &Frame, adapter: &DepthMaps, port: &DepthMaps) -> usize {
 fn other_maps_of_adapter_and_ports_differ_at_edges_alone() {
     let Some(device) = device() else { return };
     for name in SCENES {
-        for method in [Method::Refined, Method::Vertex, Method::FragmentDepth, Method::Tessellated]
-        {
+        // refined also from a near sphere inside the rooms on, and reversed
+        for (method, near_share, reversed) in [
+            (Method::Refined, None, false),
+            (Method::Refined, Some(0.4), false),
+            (Method::Refined, Some(0.4), true),
+            (Method::Vertex, None, false),
+            (Method::FragmentDepth, None, false),
+            (Method::Tessellated, None, false),
+        ] {
             let level = Level::Mesh(4);
-            let frame = turned(name, Settings { method, level, ..settings() });
+            let mut frame = turned(name, Settings { method, level, reversed, ..settings() });
+            if let Some(share) = near_share {
+                frame.light.near = share * frame.light.far;
+            }
             let adapter = gpu::make_maps(&device, &frame).unwrap();
             let port = cpu::make_maps(&frame).unwrap();
             assert!(is_whole(&adapter) && is_whole(&port));
@@ -111,7 +121,7 @@ fn other_maps_of_adapter_and_ports_differ_at_edges_alone() {
             let cuts = if method == Method::Tessellated { 4.0 } else { 1.0 };
             let passed = cuts * edges(&frame) * DPSM_EDGE_SNAP;
             println!(
-                "{name:12} {method:?}: {apart} of {} apart, at most {passed:.0} expected",
+                "{name:12} {method:?} {near_share:?} {reversed}: {apart} of {} apart, at most {passed:.0} expected",
                 stored(&port)
             );
             assert!((apart as f64) <= passed, "{name} {method:?}: {apart}");

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Chunk, Set, ShadowMaps, layers_of};
+use super::sets::Set;
+use super::{Chunk, ShadowMaps, layers_of};
 use crate::gpu::lists::{DRAW_BYTES, FLAT, MASKED, MASKED_PARTS, PARTS, PLANE, WHOLE, Work};
 use crate::gpu::mesh::MeshBuffers;
 use crate::gpu::multiview::view_mask;
